@@ -1,0 +1,59 @@
+// BodyModel: a skinned triangle mesh on a Skeleton, posed by linear blend skinning.
+// x_in_world = sum_j w_j * world_from_joint_j(pose) * joint_from_rest_j * x_in_rest. The mesh keeps its own rest pose
+// (MakeHuman's A-pose); joint_from_rest carries it to the skeleton's anatomical zero.
+// Source: linear blend skinning (references.bib: magnenat1988).
+// Threads: a value; const functions are safe.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "silpose/base/result.h"
+#include "silpose/body/skeleton.h"
+#include "silpose/geometry/mesh.h"
+
+namespace silpose {
+
+// Skin weights by vertex in compressed rows: those of vertex v are entries [row_start[v], row_start[v + 1]).
+struct SkinWeights {
+  std::vector<uint32_t> row_start;   // [V + 1]
+  std::vector<uint16_t> joint_idx;   // ascending within a vertex
+  std::vector<float> weight;         // positive, sums to 1 for each vertex
+};
+
+struct BodyModel {
+  std::string name;                          // "human:age=25,sex=f,height=1.620,weight=58.0"
+  Skeleton skeleton;
+  Mesh rest;                                 // rest pose, metres, floor at y = 0
+  SkinWeights skin;
+  std::vector<Rigid3> joint_from_rest;       // [J]
+  struct EndPoint { std::string name; int joint_idx; Eigen::Vector3d offset_in_joint; };
+  std::vector<EndPoint> end_points;          // fixed to a joint: head_top, toes, finger tips
+  double height_m = 0, weight_kg = 0;        // stature and mass of the rest mesh
+  std::map<std::string, std::string> facts;  // how it was built: sliders, source data, its hash
+};
+
+// Vertices [V] of the mesh for a pose [D], world coordinates. `world_from_joint` [J] is scratch and result.
+void skin_vertices(const BodyModel& body, std::span<const double> pose, std::span<Rigid3> world_from_joint,
+                   std::span<Eigen::Vector3f> vertices);
+[[nodiscard]] std::vector<Eigen::Vector3f> skin_vertices(const BodyModel& body, std::span<const double> pose);
+
+// Joint centres in joint order, then end points: names and positions [J + E] in world coordinates.
+[[nodiscard]] std::vector<std::string> landmark_names(const BodyModel& body);
+[[nodiscard]] std::vector<Eigen::Vector3d> landmark_positions(const BodyModel& body, std::span<const double> pose);
+
+// The same body with about `num_vertices` vertices: still closed, vertices kept where they were, outline kept.
+// Errors: throws std::invalid_argument when asked for fewer than 100.
+[[nodiscard]] BodyModel level_of_detail(const BodyModel& body, int num_vertices);
+
+// The .body file: everything above, compact and little-endian (docs/formats.md).
+// Errors: missing, empty, truncated, wrong magic or version, checksum; each names the file.
+Result<void> write_body(const std::filesystem::path& path, const BodyModel& body);
+Result<BodyModel> load_body(const std::filesystem::path& path);
+
+}  // namespace silpose

@@ -1,0 +1,76 @@
+// Skeleton: joints, their degrees of freedom and limits; poses in natural units and normalised (NPSU).
+// A pose is a vector of D numbers, metres and radians, in DOF order. Zero of every angle is anatomical: standing
+// upright, facing +Z, left at +X, arms hanging, palms to the thighs. Equal values left and right are mirror-symmetric.
+// Source: thesis Table 2.1 (references.bib: cormier2019); signs, rotation orders and limits: docs/formats.md.
+// Threads: a value; const functions are safe.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "silpose/base/result.h"
+#include "silpose/geometry/rigid3.h"
+
+namespace silpose {
+
+// One degree of freedom: a translation along, or a rotation about, `axis`: a unit vector in the joint's own frame, whose
+// axes are the world's in the zero pose. Joint::dof_indices tells the order in which a joint's rotations are applied.
+struct Dof {
+  std::string name;              // column without its unit: "right_thigh_rx", "root_tx"
+  int joint_idx = 0;
+  bool is_translation = false;
+  bool is_periodic = false;      // a full turn: limits are for NPSU only, values wrap
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  // positive values turn by the right hand about it
+  double lower = 0, upper = 0;   // radians or metres
+
+  [[nodiscard]] std::string column() const { return name + (is_translation ? "_m" : "_deg"); }
+};
+
+struct Joint {
+  std::string name;
+  int parent_idx = -1;                                       // -1: the root; always < own index
+  Eigen::Vector3d offset_in_parent = Eigen::Vector3d::Zero();  // metres, in the zero pose
+  std::vector<int> dof_indices;                              // rotations in order of application, outermost first
+};
+
+class Skeleton {
+ public:
+  // Errors: throws std::invalid_argument unless parents come first, limits are ordered and DOF refer to joints.
+  Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof> dofs);
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] std::span<const Joint> joints() const { return joints_; }
+  [[nodiscard]] std::span<const Dof> dofs() const { return dofs_; }
+  [[nodiscard]] int num_joints() const { return static_cast<int>(joints_.size()); }
+  [[nodiscard]] int num_dofs() const { return static_cast<int>(dofs_.size()); }
+  [[nodiscard]] std::optional<int> find_joint(std::string_view name) const;
+  [[nodiscard]] std::optional<int> find_dof(std::string_view name_or_column) const;
+  // True when `joint_idx` is `ancestor_idx` or hangs below it.
+  [[nodiscard]] bool is_below(int joint_idx, int ancestor_idx) const;
+
+  // [J] where each joint's coordinate frame is for a pose [D]; all axes are the world's in the zero pose.
+  void forward_kinematics(std::span<const double> pose, std::span<Rigid3> world_from_joint) const;
+  [[nodiscard]] std::vector<Rigid3> forward_kinematics(std::span<const double> pose) const;
+
+  // d x_in_world / d pose [3, D] of a point fixed to a joint. `world_from_joint` [J] comes from forward_kinematics.
+  [[nodiscard]] Eigen::Matrix3Xd point_jacobian(std::span<const double> pose, std::span<const Rigid3> world_from_joint,
+                                                int joint_idx, const Eigen::Vector3d& x_in_world) const;
+
+  // Brings a pose inside the limits: clamps, and wraps periodic DOF. Translations are left alone.
+  void clamp(std::span<double> pose) const;
+
+  // Natural units to NPSU (0 at the lower limit, 1 at the upper) and back. [D]
+  [[nodiscard]] std::vector<double> normalise(std::span<const double> pose) const;
+  [[nodiscard]] std::vector<double> denormalise(std::span<const double> npsu) const;
+
+ private:
+  std::string name_;
+  std::vector<Joint> joints_;
+  std::vector<Dof> dofs_;
+};
+
+}  // namespace silpose

@@ -1,0 +1,11 @@
+// StateBatch: the states of N particles, one row each. Filters know no bodies: a row is D numbers.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace silpose {
+
+// [N, D] row-major.
+using StateBatch = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+}  // namespace silpose

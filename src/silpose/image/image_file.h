@@ -1,0 +1,22 @@
+// Pictures as files (PNG, JPEG, whatever OpenCV reads).
+// Threads: functions without state.
+#pragma once
+
+#include <filesystem>
+
+#include "silpose/base/result.h"
+#include "silpose/image/image.h"
+#include "silpose/image/mask.h"
+
+namespace silpose {
+
+// Errors: no such file, empty, not a picture.
+Result<ByteImage> read_colour_image(const std::filesystem::path& path);  // 3 channels B, G, R
+Result<ByteImage> read_grey_image(const std::filesystem::path& path);    // 1 channel
+Result<Mask> read_mask(const std::filesystem::path& path);               // white (>= 128) is set
+
+// 1 or 3 channels; the format is told by the extension. Errors: not writable.
+Result<void> write_image(const std::filesystem::path& path, const ByteImage& image);
+Result<void> write_mask(const std::filesystem::path& path, const Mask& mask);
+
+}  // namespace silpose

@@ -1,0 +1,102 @@
+// Video in and out: a file, a directory of pictures, a printf pattern or a camera, read as Frames; H.264 written.
+// Built on OpenCV's videoio over FFmpeg.
+// Threads: one thread per Video or VideoWriter.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "silpose/base/result.h"
+#include "silpose/image/frame.h"
+
+namespace silpose {
+
+struct VideoOptions {
+  double default_fps = 30;  // of input that carries no rate
+};
+
+// Frames of one or several cameras in step. Move-only.
+//   auto video = open_video("walk.mp4").value();
+//   for (const Frame& frame : video) ...
+class Video {
+ public:
+  Video(Video&&) noexcept;
+  Video& operator=(Video&&) noexcept;
+  ~Video();
+
+  [[nodiscard]] int num_cameras() const;
+  [[nodiscard]] int width(int camera = 0) const;
+  [[nodiscard]] int height(int camera = 0) const;
+  [[nodiscard]] double fps() const;
+  [[nodiscard]] bool fps_assumed() const;       // the input carries no rate
+  [[nodiscard]] bool is_live() const;           // a camera: cannot rewind
+  // Frames as the container tells (0: unknown); the truth is known at the end.
+  [[nodiscard]] int64_t num_frames_hint() const;
+  [[nodiscard]] const std::string& name() const;
+
+  // The next frame, nothing at the end. Errors: an image whose size differs from the first one's; a stream that breaks
+  // off before the frames its container promises is the end, and truncated() says so.
+  Result<std::optional<Frame>> next();
+  [[nodiscard]] bool truncated() const;
+
+  // Back to the first frame. Errors: a live camera; the input vanished.
+  Result<void> rewind();
+
+  // Range-for over the frames left. Errors: throws std::runtime_error where next() would return an error.
+  class Iterator {
+   public:
+    explicit Iterator(Video* video) : video_(video) { ++*this; }
+    Iterator() = default;
+    const Frame& operator*() const { return *frame_; }
+    Iterator& operator++() {
+      frame_ = video_->next().value();
+      return *this;
+    }
+    bool operator!=(const Iterator&) const { return frame_.has_value(); }
+
+   private:
+    Video* video_ = nullptr;
+    std::optional<Frame> frame_;
+  };
+  Iterator begin() { return Iterator(this); }
+  Iterator end() { return {}; }
+
+ private:
+  friend Result<Video> open_video(const std::vector<std::string>&, const VideoOptions&);
+  struct Impl;
+  explicit Video(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+// Opens a file, a directory of pictures (in name order), a printf pattern ("img-%06d.png") or "camera:N".
+// Errors: missing, empty, not a video, no frame in it; several inputs whose rates differ by more than 1 %.
+Result<Video> open_video(const std::vector<std::string>& inputs, const VideoOptions& options = {});
+Result<Video> open_video(const std::string& input, const VideoOptions& options = {});
+
+// Writes H.264 in MP4 (yuv420p; odd sizes are padded by one row or column). Move-only; close() or the destructor ends
+// the file.
+class VideoWriter {
+ public:
+  VideoWriter(VideoWriter&&) noexcept;
+  VideoWriter& operator=(VideoWriter&&) noexcept;
+  ~VideoWriter();
+
+  // Errors: size other than the first picture's; the encoder refuses.
+  Result<void> write(const ByteImage& image);
+  void close();
+
+ private:
+  friend Result<VideoWriter> create_video(const std::filesystem::path&, int, int, double);
+  struct Impl;
+  explicit VideoWriter(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+// Errors: not writable; no H.264 encoder.
+Result<VideoWriter> create_video(const std::filesystem::path& path, int width, int height, double fps);
+
+}  // namespace silpose

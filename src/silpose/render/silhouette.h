@@ -1,0 +1,78 @@
+// Silhouettes of posed meshes: from vertices in pixels to a Mask. Two ways that agree to the pixel: a plain reference
+// (every triangle filled) and the fast one (winding number of the outline only).
+// A pixel is set when its centre lies in some projected triangle. Shared rule for both: vertices are rounded to a grid of
+// 1/256 raster pixel first; a triangle with a vertex nearer than PinholeCamera::kNear is left out.
+// Threads: OutlineRenderer's scratch belongs to one thread; the rest are pure functions.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "silpose/body/body_model.h"
+#include "silpose/geometry/camera.h"
+#include "silpose/geometry/mesh.h"
+#include "silpose/image/mask.h"
+#include "silpose/render/window.h"
+
+namespace silpose {
+
+// Which face lies across each edge of each face; made once per mesh. Errors: none; a missing neighbour is -1.
+struct EdgeTopology {
+  explicit EdgeTopology(std::span<const Face> faces);
+  std::vector<Face> faces;                        // [F]
+  std::vector<std::array<int32_t, 3>> neighbour;  // [F] across edges (0,1), (1,2), (2,0)
+};
+
+// Vertices [V] in world coordinates to image pixels [V]; vertices nearer than kNear become NaN.
+void project_vertices(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
+                      std::span<Eigen::Vector2f> pixels);
+
+// The reference: the union of all triangles, each filled by itself.
+void draw_silhouette_reference(std::span<const Eigen::Vector2f> pixels, std::span<const Face> faces,
+                               const Window& window, Mask& mask);
+
+// Smallest image box [x0, y0, x1, y1] around the projected vertices that are seen; nothing when there is none.
+struct PixelBounds { double x0, y0, x1, y1; };
+std::optional<PixelBounds> pixel_bounds(std::span<const Eigen::Vector2f> pixels);
+
+// The fast renderer. Source: non-zero winding rule; every triangle turned to face the camera adds +-1 along the edges
+// whose neighbour faces away or is missing; crossings per scanline are summed along the row.
+class OutlineRenderer {
+ public:
+  explicit OutlineRenderer(const EdgeTopology& topology);
+
+  void draw(std::span<const Eigen::Vector2f> pixels, const Window& window, Mask& mask);
+
+  // Counts of a drawn silhouette against an observed mask of the window's size, without keeping the drawing.
+  struct Counts {
+    int64_t model = 0;       // pixels of the silhouette
+    int64_t both = 0;        // pixels set in both
+  };
+  Counts count(std::span<const Eigen::Vector2f> pixels, const Window& window, const Mask& observed);
+
+ private:
+  const EdgeTopology* topology_;
+  // scratch is the implementer's business
+};
+
+// A batch: poses [N, D] (row-major) to counts against one observed mask of the window's size. The window is in image
+// pixels of `camera`. Runs on all cores (base/parallel.h); the result does not depend on how many.
+struct BatchView { const double* data; size_t num_poses; size_t num_dofs; size_t stride; };  // row n at data + n * stride
+class BatchRenderer {
+ public:
+  BatchRenderer(std::shared_ptr<const BodyModel> body, PinholeCamera camera);
+  void counts(const BatchView& poses, const Window& window, const Mask& observed,
+              std::span<OutlineRenderer::Counts> out) const;
+  // Each silhouette cropped to its own bounding box and scaled to the observed mask's size (see
+  // shape/normalised_silhouette.h), then compared. An unseen body counts {0, 0}.
+  void counts_cropped(const BatchView& poses, const Mask& observed_cropped,
+                      std::span<OutlineRenderer::Counts> out) const;
+  [[nodiscard]] const BodyModel& body() const;
+  [[nodiscard]] const PinholeCamera& camera() const;
+};
+
+// One pose over the whole image: what reports and `evaluate` compare.
+Mask render_silhouette(const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose);
+
+}  // namespace silpose
