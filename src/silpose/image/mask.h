@@ -39,6 +39,8 @@ class Mask {
   [[nodiscard]] std::span<const uint64_t> row(int y) const {
     return std::span(words_).subspan(static_cast<size_t>(y) * words_per_row_, words_per_row_);
   }
+  // All rows, [height x words_per_row].
+  [[nodiscard]] std::span<const uint64_t> words() const { return words_; }
   void clear();
 
   // Number of set pixels.
@@ -62,7 +64,8 @@ int64_t or_count(const Mask& a, const Mask& b);
 // Intersection over union; 1 when both are empty. REQUIRES: equal sizes.
 double intersection_over_union(const Mask& a, const Mask& b);
 
-// A mask typed as a picture: rows separated by newlines, '#' set, '.' not. For tests and messages.
+// A mask typed as a picture: rows separated by newlines, '#' set, '.' not; blanks around rows and empty rows are
+// skipped. For tests and messages. Errors: throws std::invalid_argument for other characters or ragged rows.
 Mask mask_from_text(std::string_view text);
 std::string text_from_mask(const Mask& mask);
 
