@@ -1,0 +1,89 @@
+#include "silpose/image/image_file.h"
+
+#include <fstream>
+#include <iterator>
+#include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace silpose {
+namespace {
+
+// The decoders print about broken files instead of only failing, or return half a picture: so look first whether the
+// file goes on to its end mark.
+bool is_cut_off(std::string_view bytes) {
+  if (bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n") {
+    for (size_t at = 8; at + 12 <= bytes.size();) {
+      uint64_t length = 0;
+      for (size_t i = 0; i < 4; ++i) length = length << 8 | static_cast<uint8_t>(bytes[at + i]);
+      if (length > bytes.size() - at - 12) return true;
+      if (bytes.substr(at + 4, 4) == "IEND") return false;
+      at += 12 + length;
+    }
+    return true;
+  }
+  if (bytes.substr(0, 2) == "\xff\xd8") {  // JPEG: an end of image after the last start of scan
+    const size_t scan = bytes.rfind("\xff\xda"), end = bytes.rfind("\xff\xd9");
+    return scan == std::string_view::npos || end == std::string_view::npos || end < scan;
+  }
+  return false;
+}
+
+Result<ByteImage> read_image(const std::filesystem::path& path, int channels) {
+  std::error_code code;
+  if (!std::filesystem::exists(path, code)) return error("{}: no such file", path.string());
+  if (!std::filesystem::is_regular_file(path, code)) return error("{}: not a file", path.string());
+  std::ifstream stream(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  if (!stream) return error("{}: cannot be read", path.string());
+  if (bytes.empty()) return error("{}: the file is empty", path.string());
+  if (is_cut_off(bytes)) return error("{}: the picture is cut off", path.string());
+  cv::Mat decoded;
+  try {
+    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
+    decoded = cv::imdecode(encoded, channels == 1 ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
+  } catch (const cv::Exception&) {  // of a size that OpenCV refuses
+    decoded.release();
+  }
+  if (decoded.empty()) return error("{}: not a picture", path.string());
+  ByteImage image(decoded.cols, decoded.rows, channels);
+  decoded.copyTo(cv::Mat(image.height(), image.width(), CV_8UC(channels), image.pixels().data()));
+  return image;
+}
+
+}  // namespace
+
+Result<ByteImage> read_colour_image(const std::filesystem::path& path) { return read_image(path, 3); }
+Result<ByteImage> read_grey_image(const std::filesystem::path& path) { return read_image(path, 1); }
+
+Result<Mask> read_mask(const std::filesystem::path& path) {
+  const Result<ByteImage> image = read_grey_image(path);
+  if (!image) return image.failure();
+  return mask_from_image(*image);
+}
+
+Result<void> write_image(const std::filesystem::path& path, const ByteImage& image) {
+  check(!image.empty() && (image.channels() == 1 || image.channels() == 3), "write_image: {}x{}x{}", image.width(),
+        image.height(), image.channels());
+  std::vector<uint8_t> encoded;
+  try {
+    const cv::Mat view(image.height(), image.width(), CV_8UC(image.channels()),
+                       const_cast<uint8_t*>(image.pixels().data()));
+    if (!cv::imencode(path.extension().string(), view, encoded)) encoded.clear();
+  } catch (const cv::Exception&) {
+    encoded.clear();
+  }
+  if (encoded.empty()) return error("{}: no picture format for this name", path.string());
+  std::ofstream stream(path, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
+  stream.close();
+  if (!stream) return error("{}: cannot be written", path.string());
+  return {};
+}
+
+Result<void> write_mask(const std::filesystem::path& path, const Mask& mask) {
+  return write_image(path, image_from_mask(mask));
+}
+
+}  // namespace silpose

@@ -1,0 +1,88 @@
+#include "silpose/image/image_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace silpose {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+class ImageFileTest : public testing::Test {
+ protected:
+  ImageFileTest() {
+    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("silpose_image_file_" + std::string(info->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~ImageFileTest() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+
+ByteImage gradient(int width, int height, int channels) {
+  ByteImage image(width, height, channels);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      for (int c = 0; c < channels; ++c) image.at(x, y, c) = static_cast<uint8_t>(7 * x + 11 * y + 90 * c);
+    }
+  }
+  return image;
+}
+
+void truncate(const fs::path& path, double fraction) {
+  fs::resize_file(path, static_cast<uintmax_t>(static_cast<double>(fs::file_size(path)) * fraction));
+}
+
+TEST_F(ImageFileTest, PngRoundTripIsExactAndKeepsChannelOrder) {
+  const ByteImage colour = gradient(17, 9, 3), grey = gradient(17, 9, 1);
+  ASSERT_TRUE(write_image(folder_ / "colour.png", colour).ok());
+  ASSERT_TRUE(write_image(folder_ / "grey.png", grey).ok());
+  EXPECT_EQ(read_colour_image(folder_ / "colour.png").value(), colour);
+  EXPECT_EQ(read_grey_image(folder_ / "grey.png").value(), grey);
+
+  const ByteImage repeated = read_colour_image(folder_ / "grey.png").value();
+  EXPECT_EQ(repeated.channels(), 3);
+  EXPECT_EQ(repeated.at(3, 4, 2), grey.at(3, 4));
+}
+
+TEST_F(ImageFileTest, MaskRoundTrip) {
+  const Mask mask = mask_from_text("..#\n##.\n...\n.#.");
+  ASSERT_TRUE(write_mask(folder_ / "mask.png", mask).ok());
+  EXPECT_EQ(read_mask(folder_ / "mask.png").value(), mask);
+}
+
+TEST_F(ImageFileTest, NamesWhatIsWrongWithAFile) {
+  EXPECT_THAT(read_mask(folder_ / "none.png").error().message, EndsWith("none.png: no such file"));
+  EXPECT_THAT(read_mask(folder_).error().message, EndsWith(": not a file"));
+  std::ofstream(folder_ / "empty.png").close();
+  EXPECT_THAT(read_colour_image(folder_ / "empty.png").error().message, EndsWith("empty.png: the file is empty"));
+  std::ofstream(folder_ / "text.png") << "not at all a picture";
+  EXPECT_THAT(read_grey_image(folder_ / "text.png").error().message, EndsWith("text.png: not a picture"));
+}
+
+TEST_F(ImageFileTest, RefusesPicturesThatAreCutOff) {
+  for (const char* name : {"cut.png", "cut.jpg"}) {
+    ASSERT_TRUE(write_image(folder_ / name, gradient(64, 64, 3)).ok());
+    ASSERT_TRUE(read_colour_image(folder_ / name).ok());
+    for (double keep : {0.9, 0.5, 0.05}) {
+      truncate(folder_ / name, keep);
+      EXPECT_FALSE(read_colour_image(folder_ / name).ok()) << name << " " << keep;
+    }
+  }
+}
+
+TEST_F(ImageFileTest, SaysWhenItCannotWrite) {
+  const ByteImage image = gradient(4, 4, 3);
+  EXPECT_THAT(write_image(folder_ / "no_such_folder" / "a.png", image).error().message, HasSubstr("cannot be written"));
+  EXPECT_THAT(write_image(folder_ / "a.nonsense", image).error().message, HasSubstr("no picture format"));
+  EXPECT_THROW((void)write_image(folder_ / "a.png", ByteImage(4, 4, 2)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace silpose

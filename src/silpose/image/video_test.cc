@@ -1,0 +1,254 @@
+#include "silpose/image/video.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "silpose/image/image_file.h"
+
+namespace silpose {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::EndsWith;
+using testing::HasSubstr;
+
+// A dark picture with a bright column at x = 4 index.
+ByteImage picture(int index, int width = 64, int height = 48) {
+  ByteImage image(width, height, 3, 20);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 4 * index; x < std::min(width, 4 * index + 4); ++x) image.at(x, y, 2) = 220;
+  }
+  return image;
+}
+
+class VideoTest : public testing::Test {
+ protected:
+  VideoTest() {
+    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() / ("silpose_video_" + std::string(info->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~VideoTest() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
+
+  [[nodiscard]] std::string write_clip(const std::string& name, int frames, double fps, int width = 64,
+                                       int height = 48) const {
+    VideoWriter writer = create_video(at(name), width, height, fps).value();
+    for (int i = 0; i < frames; ++i) writer.write(picture(i % 12, width, height)).value();
+    return at(name);
+  }
+
+  void write_pictures(const std::string& format, int first, int count) const {
+    for (int i = first; i < first + count; ++i) {
+      write_image(at(fmt::format(fmt::runtime(format), i)), picture(i % 12)).value();
+    }
+  }
+
+  fs::path folder_;
+};
+
+int64_t count_frames(Video& video) {
+  int64_t count = 0;
+  for (const Frame& frame : video) {
+    EXPECT_EQ(frame.index, count);
+    ++count;
+  }
+  return count;
+}
+
+TEST_F(VideoTest, FileRoundTripKeepsPicturesCountAndTimes) {
+  Video video = open_video(write_clip("clip.mp4", 12, 29.97)).value();
+  EXPECT_EQ(video.num_cameras(), 1);
+  EXPECT_EQ(video.width(), 64);
+  EXPECT_EQ(video.height(), 48);
+  EXPECT_NEAR(video.fps(), 29.97, 0.01);
+  EXPECT_FALSE(video.fps_assumed());
+  EXPECT_FALSE(video.is_live());
+  EXPECT_EQ(video.num_frames_hint(), 12);
+  int64_t count = 0;
+  for (const Frame& frame : video) {
+    ASSERT_EQ(frame.images.size(), 1u);
+    EXPECT_EQ(frame.time_ns, std::llround(static_cast<double>(count) * 1e9 / video.fps()));
+    // The bright column is where it was drawn: frames come in order, rows and columns are not swapped.
+    const ByteImage& image = frame.images[0];
+    EXPECT_GT(image.at(static_cast<int>(4 * count + 2), 24, 2), 120) << count;
+    EXPECT_LT(image.at(static_cast<int>((4 * count + 32) % 64), 24, 2), 60) << count;
+    ++count;
+  }
+  EXPECT_EQ(count, 12);
+  EXPECT_FALSE(video.truncated());
+  EXPECT_FALSE(video.next().value().has_value()) << "the end stays the end";
+}
+
+TEST_F(VideoTest, RewindShowsTheSameFramesAgain) {
+  Video video = open_video(write_clip("clip.mp4", 6, 25)).value();
+  const ByteImage first = video.next().value()->images[0];
+  (void)video.next().value();
+  ASSERT_TRUE(video.rewind().ok());
+  EXPECT_EQ(video.next().value()->images[0], first);
+  EXPECT_EQ(video.next().value()->index, 1);
+}
+
+TEST_F(VideoTest, OddSizesArePaddedByOne) {
+  Video video = open_video(write_clip("odd.mp4", 3, 30, 63, 47)).value();
+  EXPECT_EQ(video.width(), 64);
+  EXPECT_EQ(video.height(), 48);
+  VideoWriter writer = create_video(at("other.mp4"), 63, 47, 30).value();
+  EXPECT_THAT(writer.write(ByteImage(64, 48, 3)).error().message, HasSubstr("a picture of 64x48"));
+  EXPECT_TRUE(writer.write(ByteImage(63, 47, 1)).ok());
+  writer.close();
+  EXPECT_FALSE(writer.write(ByteImage(63, 47, 3)).ok());
+}
+
+TEST_F(VideoTest, DirectoryIsReadInNameOrderAtTheDefaultRate) {
+  write_image(at("b.png"), picture(1)).value();
+  write_image(at("a.png"), picture(0)).value();
+  write_image(at("c.PNG"), picture(2)).value();
+  std::ofstream(at("notes.txt")) << "not a picture";
+  Video video = open_video(folder_.string(), {.default_fps = 50}).value();
+  EXPECT_TRUE(video.fps_assumed());
+  EXPECT_EQ(video.num_frames_hint(), 3);
+  int count = 0;
+  for (const Frame& frame : video) {
+    EXPECT_EQ(frame.images[0], picture(count));
+    EXPECT_EQ(frame.time_ns, 20'000'000 * count);
+    ++count;
+  }
+  EXPECT_EQ(count, 3);
+}
+
+TEST_F(VideoTest, PatternFollowsTheNumbers) {
+  write_pictures("img-{:03}.png", 8, 4);
+  write_image(at("img-9.png"), picture(5)).value();  // too few digits: another name
+  Video video = open_video(at("img-%03d.png")).value();
+  int index = 8;
+  for (const Frame& frame : video) EXPECT_EQ(frame.images[0], picture(index++ % 12));
+  EXPECT_EQ(index, 12);
+
+  fs::remove(at("img-009.png"));
+  EXPECT_THAT(open_video(at("img-%03d.png")).error().message, EndsWith("img-%03d.png: picture number 9 is missing"));
+  EXPECT_THAT(open_video(at("other-%d.png")).error().message, EndsWith("no picture has such a name"));
+}
+
+TEST_F(VideoTest, UnpaddedPatternOrdersByNumberNotByName) {
+  write_pictures("{}.png", 9, 2);
+  Video video = open_video(at("%d.png")).value();
+  EXPECT_EQ(video.next().value()->images[0], picture(9));
+  EXPECT_EQ(video.next().value()->images[0], picture(10));
+}
+
+TEST_F(VideoTest, ChangeOfSizeNamesTheFrame) {
+  write_pictures("{:03}.png", 0, 2);
+  write_image(at("002.png"), picture(2, 32, 48)).value();
+  Video video = open_video(folder_.string()).value();
+  (void)video.next().value();
+  (void)video.next().value();
+  EXPECT_THAT(video.next().error().message, HasSubstr("frame 2 is 32x48, those before it 64x48"));
+}
+
+TEST_F(VideoTest, BrokenPictureNamesTheFile) {
+  write_pictures("{:03}.png", 0, 2);
+  fs::resize_file(at("001.png"), fs::file_size(at("001.png")) / 2);
+  Video video = open_video(folder_.string()).value();
+  (void)video.next().value();
+  EXPECT_THAT(video.next().error().message, EndsWith("001.png: the picture is cut off"));
+}
+
+TEST_F(VideoTest, NamesWhatIsNotAVideo) {
+  EXPECT_THAT(open_video(at("none.mp4")).error().message, EndsWith("none.mp4: no such file or directory"));
+  std::ofstream(at("empty.mp4")).close();
+  EXPECT_THAT(open_video(at("empty.mp4")).error().message, EndsWith("empty.mp4: the file is empty"));
+  std::ofstream(at("text.txt")) << "FFmpeg would draw these letters as a video\n";
+  EXPECT_THAT(open_video(at("text.txt")).error().message, EndsWith("text.txt: not a video"));
+  std::ofstream noise(at("noise.mp4"), std::ios::binary);
+  for (int i = 0; i < 20000; ++i) noise.put(static_cast<char>(i * i * 31 + i / 7));
+  noise.close();
+  EXPECT_THAT(open_video(at("noise.mp4")).error().message, HasSubstr("noise.mp4: not a video"));
+  fs::create_directory(at("folder"));
+  EXPECT_THAT(open_video(at("folder")).error().message, EndsWith("no pictures in this directory"));
+  EXPECT_THAT(open_video("camera:x").error().message, EndsWith("not the number of a camera"));
+  EXPECT_THAT(open_video("camera:977").error().message, EndsWith("camera:977: no such camera"));
+}
+
+TEST_F(VideoTest, BadInputPrintsNothing) {
+  std::string clip = write_clip("clip.mp4", 30, 30);
+  testing::internal::CaptureStderr();
+  fs::resize_file(clip, fs::file_size(clip) / 2);
+  EXPECT_FALSE(open_video(clip).ok());
+  EXPECT_FALSE(create_video(at("no_such_folder/a.mp4"), 64, 48, 30).ok());
+  EXPECT_FALSE(create_video(folder_, 64, 48, 30).ok());
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// Moves an MP4's index to its front, so that the file can be cut and still tells how many frames it should have.
+void move_index_to_front(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  const auto number = [&](size_t i) {
+    uint32_t value = 0;
+    for (size_t k = 0; k < 4; ++k) value = value << 8 | static_cast<uint8_t>(bytes[i + k]);
+    return value;
+  };
+  std::string front, index, rest;
+  for (size_t i = 0; i + 8 <= bytes.size();) {
+    const size_t size = number(i);
+    const std::string kind = bytes.substr(i + 4, 4);
+    (kind == "moov" ? index : kind == "ftyp" ? front : rest) += bytes.substr(i, size);
+    i += size;
+  }
+  bytes = index;  // every chunk now starts one index later
+  for (size_t i = bytes.find("stco"); i != std::string::npos; i = bytes.find("stco", i + 4)) {
+    const uint32_t count = number(i + 8);
+    for (size_t k = 0; k < count; ++k) {
+      const uint32_t value = number(i + 12 + 4 * k) + static_cast<uint32_t>(index.size());
+      for (size_t b = 0; b < 4; ++b) bytes[i + 12 + 4 * k + b] = static_cast<char>(value >> (24 - 8 * b));
+    }
+  }
+  std::ofstream(path, std::ios::binary) << front << bytes << rest;
+}
+
+TEST_F(VideoTest, CutFileEndsEarlyAndSaysSo) {
+  VideoWriter writer = create_video(at("clip.mp4"), 64, 48, 30).value();
+  for (int i = 0; i < 120; ++i) writer.write(picture(i * 7 % 16)).value();
+  writer.close();
+  move_index_to_front(at("clip.mp4"));
+  Video whole = open_video(at("clip.mp4")).value();
+  ASSERT_EQ(count_frames(whole), 120);
+  EXPECT_FALSE(whole.truncated());
+
+  fs::resize_file(at("clip.mp4"), fs::file_size(at("clip.mp4")) * 3 / 4);
+  testing::internal::CaptureStderr();
+  Video cut = open_video(at("clip.mp4")).value();
+  const int64_t count = count_frames(cut);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_GT(count, 10);
+  EXPECT_LT(count, 110);
+  EXPECT_EQ(cut.num_frames_hint(), 120);
+  EXPECT_TRUE(cut.truncated());
+}
+
+TEST_F(VideoTest, CamerasInStepEndWithTheShortest) {
+  const std::string a = write_clip("a.mp4", 8, 30), b = write_clip("b.mp4", 5, 30, 32, 32);
+  Video video = open_video(std::vector<std::string>{a, b}).value();
+  EXPECT_EQ(video.num_cameras(), 2);
+  EXPECT_EQ(video.width(1), 32);
+  EXPECT_EQ(count_frames(video), 5);
+  EXPECT_FALSE(video.truncated());
+  const std::string c = write_clip("c.mp4", 5, 25);
+  EXPECT_THAT(open_video(std::vector<std::string>{a, c}).error().message, HasSubstr("c.mp4: 25.000 frames a second"));
+}
+
+TEST_F(VideoTest, OnePictureIsAVideoOfOneFrame) {
+  write_image(at("one.png"), picture(3)).value();
+  Video video = open_video(at("one.png")).value();
+  EXPECT_EQ(video.next().value()->images[0], picture(3));
+  EXPECT_FALSE(video.next().value().has_value());
+}
+
+}  // namespace
+}  // namespace silpose
