@@ -10,6 +10,20 @@ find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(meshoptimizer REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(OpenCV 4.5 REQUIRED COMPONENTS core imgproc imgcodecs videoio video calib3d)
+
+# OpenCV's own CMake package comes with Debian's libopencv-dev, which drags in 40 more packages; the modules we use have
+# packages of their own, without it.
+set(SILPOSE_OPENCV_MODULES core imgproc imgcodecs videoio video)
+find_package(OpenCV 4.5 QUIET COMPONENTS ${SILPOSE_OPENCV_MODULES})
+if(NOT OpenCV_FOUND)
+  find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
+  foreach(module IN LISTS SILPOSE_OPENCV_MODULES)
+    find_library(OPENCV_${module}_LIBRARY opencv_${module} REQUIRED)
+    add_library(opencv_${module} SHARED IMPORTED)
+    set_target_properties(opencv_${module} PROPERTIES IMPORTED_LOCATION ${OPENCV_${module}_LIBRARY}
+                          INTERFACE_INCLUDE_DIRECTORIES ${OPENCV_INCLUDE_DIR})
+  endforeach()
+endif()
+
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)

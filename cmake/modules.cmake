@@ -57,6 +57,8 @@ function(silpose_module NAME)
   list(FILTER tests INCLUDE REGEX "_test\\.cc$")
 
   if(NOT sources)  # TEMP
+    add_library(silpose_${NAME} INTERFACE)
+    add_library(silpose::${NAME} ALIAS silpose_${NAME})
     return()
   endif()
   list(TRANSFORM arg_DEPENDS PREPEND silpose_ OUTPUT_VARIABLE dependencies)

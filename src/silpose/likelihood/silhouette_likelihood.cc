@@ -1,0 +1,133 @@
+#include "silpose/likelihood/silhouette_likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "silpose/base/check.h"
+#include "silpose/shape/normalised_silhouette.h"
+
+namespace silpose {
+namespace {
+
+// The whole image, drawn so that the longer side of `box` takes `resolution` raster pixels; never enlarged.
+Window image_window(const Mask& mask, const Box& box, int resolution) {
+  const double scale = std::min(1.0, static_cast<double>(resolution) / std::max({box.width, box.height, 1}));
+  return {.x0 = 0,
+          .y0 = 0,
+          .scale_x = scale,
+          .scale_y = scale,
+          .width = std::max(1, static_cast<int>(std::lround(mask.width() * scale))),
+          .height = std::max(1, static_cast<int>(std::lround(mask.height() * scale)))};
+}
+
+// Differing pixels over the sum of both areas. A body that is not seen at all shares nothing with what was observed.
+double area_distance(const OutlineRenderer::Counts& counts, int64_t observed_area) {
+  const int64_t sum = counts.model + observed_area;
+  return sum == 0 ? 1.0 : static_cast<double>(sum - 2 * counts.both) / static_cast<double>(sum);
+}
+
+}  // namespace
+
+void LikelihoodOptions::check() const {
+  silpose::check(std::isfinite(sharpness) && sharpness > 0, "sharpness {} is not a positive number", sharpness);
+  silpose::check(resolution >= 16 && resolution <= 1024, "resolution {} is not within 16..1024", resolution);
+}
+
+SilhouetteLikelihood::SilhouetteLikelihood(std::vector<std::shared_ptr<const BatchRenderer>> renderers,
+                                           LikelihoodOptions options)
+    : renderers_(std::move(renderers)), options_(options) {
+  options_.check();
+  check(!renderers_.empty(), "SilhouetteLikelihood: no renderer");
+  for (const auto& renderer : renderers_) {
+    check(&renderer->body() == &renderers_.front()->body(), "SilhouetteLikelihood: renderers of different bodies");
+  }
+}
+
+Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations) const {
+  check(observations.size() == renderers_.size(), "SilhouetteLikelihood: {} observations for {} cameras",
+        observations.size(), renderers_.size());
+  Evidence evidence;
+  for (size_t c = 0; c < observations.size(); ++c) {
+    const Observation& observation = observations[c];
+    const PinholeCamera& camera = renderers_[c]->camera();
+    check(observation.mask.width() == camera.width && observation.mask.height() == camera.height,
+          "SilhouetteLikelihood: mask of {}x{} for camera '{}' of {}x{}", observation.mask.width(),
+          observation.mask.height(), camera.name, camera.width, camera.height);
+    Evidence::View view;
+    if (!observation.trust.nothing_found && !observation.box.empty()) {
+      if (options_.comparison == Comparison::kCropped) {
+        view.observed = normalised_silhouette(observation.mask, options_.resolution);
+      } else {
+        view.window = image_window(observation.mask, observation.box, options_.resolution);
+        view.observed = resample_mask(observation.mask, view.window);
+      }
+      view.area = view.observed.count();
+      view.trust = view.area > 0 ? observation.trust.overall : 0;
+    }
+    evidence.views.push_back(std::move(view));
+  }
+  return evidence;
+}
+
+void SilhouetteLikelihood::accumulate(const Evidence& evidence, const StateBatch& states, bool weighted,
+                                      std::span<double> out) const {
+  const auto num_states = static_cast<size_t>(states.rows());
+  check(out.size() == num_states, "SilhouetteLikelihood: {} outputs for {} states", out.size(), num_states);
+  check(evidence.views.size() == renderers_.size(), "SilhouetteLikelihood: evidence of {} cameras for {}",
+        evidence.views.size(), renderers_.size());
+  const auto num_dofs = static_cast<size_t>(body().skeleton.num_dofs());
+  check(static_cast<size_t>(states.cols()) >= num_dofs, "SilhouetteLikelihood: states of {} columns, body of {} DOF",
+        states.cols(), num_dofs);
+  std::fill(out.begin(), out.end(), 0.0);
+  const BatchView batch{states.data(), num_states, num_dofs, static_cast<size_t>(states.cols())};
+  std::vector<OutlineRenderer::Counts> counts(num_states);
+  for (size_t c = 0; c < renderers_.size(); ++c) {
+    const Evidence::View& view = evidence.views[c];
+    if (view.trust <= 0) continue;
+    if (options_.comparison == Comparison::kCropped) {
+      renderers_[c]->counts_cropped(batch, view.observed, counts);
+    } else {
+      renderers_[c]->counts(batch, view.window, view.observed, counts);
+    }
+    for (size_t n = 0; n < num_states; ++n) {
+      out[n] += (weighted ? view.trust : 1.0) * area_distance(counts[n], view.area);
+    }
+  }
+}
+
+void SilhouetteLikelihood::distances(const Evidence& evidence, const StateBatch& states,
+                                     std::span<double> out) const {
+  accumulate(evidence, states, false, out);
+  const auto seen = std::count_if(evidence.views.begin(), evidence.views.end(), [](const auto& v) { return v.trust > 0; });
+  for (double& distance : out) distance = seen > 0 ? distance / static_cast<double>(seen) : 0;
+}
+
+void SilhouetteLikelihood::log_likelihood(const Evidence& evidence, const StateBatch& states,
+                                          std::span<double> out) const {
+  accumulate(evidence, states, true, out);
+  for (double& value : out) value *= -options_.sharpness;
+}
+
+SilhouetteLikelihood::Derivative SilhouetteLikelihood::derivative(const Evidence& evidence,
+                                                                  std::span<const double> pose,
+                                                                  std::span<const double> steps) const {
+  const auto num_dofs = static_cast<Eigen::Index>(body().skeleton.num_dofs());
+  check(std::ssize(pose) == num_dofs && std::ssize(steps) == num_dofs,
+        "SilhouetteLikelihood: pose of {} and steps of {} numbers for {} DOF", pose.size(), steps.size(), num_dofs);
+  const Eigen::Map<const Eigen::RowVectorXd> centre(pose.data(), num_dofs);
+  StateBatch states = centre.replicate(2 * num_dofs + 1, 1);
+  for (Eigen::Index d = 0; d < num_dofs; ++d) {
+    check(steps[d] > 0, "SilhouetteLikelihood: step {} of DOF {}", steps[d], d);
+    states(2 * d + 1, d) += steps[d];
+    states(2 * d + 2, d) -= steps[d];
+  }
+  std::vector<double> values(states.rows());
+  log_likelihood(evidence, states, values);
+  Derivative result{values[0], Eigen::VectorXd(num_dofs)};
+  for (Eigen::Index d = 0; d < num_dofs; ++d) {
+    result.gradient[d] = (values[2 * d + 1] - values[2 * d + 2]) / (2 * steps[d]);
+  }
+  return result;
+}
+
+}  // namespace silpose

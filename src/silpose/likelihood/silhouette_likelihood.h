@@ -1,0 +1,77 @@
+// SilhouetteLikelihood: how well poses explain the observed silhouettes. states [N, D] -> silhouettes -> distances ->
+// log-likelihood [N]; several cameras are summed.
+// Source: pixel-count distance, eq. 2.4; weights, eq. 2.14 with a sharpness (references.bib: cormier2019).
+// Threads: constant after construction; all functions may be called from any thread.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "silpose/filter/state_batch.h"
+#include "silpose/render/silhouette.h"
+#include "silpose/shape/observation.h"
+
+namespace silpose {
+
+// What the two silhouettes are compared on.
+enum class Comparison {
+  kImage,    // the whole image: position and scale count
+  kCropped,  // both cropped to their boxes and scaled to a common size, as the thesis does: only the shape counts
+};
+
+struct LikelihoodOptions {
+  Comparison comparison = Comparison::kImage;
+  double sharpness = 40;  // log-likelihood of a silhouette that shares no pixel with the observed one is -sharpness
+  int resolution = 128;   // raster pixels along the longer side of the observed silhouette
+  // Errors: throws std::invalid_argument.
+  void check() const;
+};
+
+// The observations of one instant in the form that comparisons need.
+struct Evidence {
+  struct View {
+    Window window;      // of the raster below, in image pixels
+    Mask observed;      // raster
+    int64_t area = 0;   // its set pixels
+    double trust = 0;   // 0: this camera has no say
+  };
+  std::vector<View> views;  // [C]
+};
+
+class SilhouetteLikelihood {
+ public:
+  // REQUIRES: at least one renderer, all of the same body.
+  SilhouetteLikelihood(std::vector<std::shared_ptr<const BatchRenderer>> renderers, LikelihoodOptions options);
+
+  // Shapes: one observation a camera. A camera whose observation found nothing gets no say.
+  [[nodiscard]] Evidence prepare(std::span<const Observation> observations) const;
+
+  // Distance in [0, 1] of each state, mean over the cameras that have a say: differing pixels over the sum of both
+  // areas (0: equal, 1: disjoint). Shapes: states [N, D' >= D], only the first D columns are read; out [N].
+  void distances(const Evidence& evidence, const StateBatch& states, std::span<double> out) const;
+
+  // -sharpness * trust * distance, summed over cameras. Shapes: as distances().
+  void log_likelihood(const Evidence& evidence, const StateBatch& states, std::span<double> out) const;
+
+  // log-likelihood and its derivative with respect to the pose, by central differences over `steps` [D].
+  struct Derivative {
+    double log_likelihood = 0;
+    Eigen::VectorXd gradient;  // [D]
+  };
+  [[nodiscard]] Derivative derivative(const Evidence& evidence, std::span<const double> pose,
+                                      std::span<const double> steps) const;
+
+  [[nodiscard]] const LikelihoodOptions& options() const { return options_; }
+  [[nodiscard]] const BodyModel& body() const { return renderers_.front()->body(); }
+  [[nodiscard]] std::span<const std::shared_ptr<const BatchRenderer>> renderers() const { return renderers_; }
+
+ private:
+  // Sum over cameras of the distance, times the camera's trust when `weighted`.
+  void accumulate(const Evidence& evidence, const StateBatch& states, bool weighted, std::span<double> out) const;
+
+  std::vector<std::shared_ptr<const BatchRenderer>> renderers_;
+  LikelihoodOptions options_;
+};
+
+}  // namespace silpose

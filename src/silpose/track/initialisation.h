@@ -1,0 +1,35 @@
+// Initialisation: from one mask and a set of common poses to ranked starting poses, by placing each on the mask and
+// descending on the likelihood.
+// Source: cormier2019 sect. 2.4.1 (gradient descent from known common poses).
+// Threads: a function without state; uses all cores.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "silpose/filter/state_batch.h"
+#include "silpose/likelihood/silhouette_likelihood.h"
+
+namespace silpose {
+
+struct InitialisationOptions {
+  int num_descended = 12;     // the best of the placed candidates that are descended
+  int num_iterations = 60;    // of descent, at most
+  double pull = 0.5;          // log-likelihood lost when every joint is a tenth of its range off the candidate
+};
+
+struct StartingPose {
+  std::vector<double> pose;   // [D]
+  double log_likelihood = 0;
+};
+
+// Starting poses, best first, one for each descended candidate. Shapes: candidates [K, D]; their root translation is
+// replaced. REQUIRES: evidence in which some camera has a say, from an image-comparing likelihood.
+std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, const Evidence& evidence,
+                                     const StateBatch& candidates, const InitialisationOptions& options = {});
+
+// Moves each candidate's root so that, in the first camera that has a say, its silhouette has the area and the
+// centroid of the observed one. Shapes: [K, D] -> [K, D].
+StateBatch place_on_mask(const SilhouetteLikelihood& likelihood, const Evidence& evidence, const StateBatch& candidates);
+
+}  // namespace silpose
