@@ -1,0 +1,19 @@
+// Whole text files: read at once, and written beside their final name, then renamed, so that a reader never sees half.
+// Threads: functions without state; two writers of one path are the caller's business.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "silpose/base/result.h"
+
+namespace silpose {
+
+// Errors: no such file, a directory, not readable; names the file.
+Result<std::string> read_text_file(const std::filesystem::path& path);
+
+// Errors: not writable, disk full; names the file. The earlier file, where there was one, is then untouched.
+Result<void> write_text_file(const std::filesystem::path& path, std::string_view text);
+
+}  // namespace silpose
