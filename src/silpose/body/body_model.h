@@ -47,6 +47,10 @@ void skin_vertices(const BodyModel& body, std::span<const double> pose, std::spa
 [[nodiscard]] std::vector<std::string> landmark_names(const BodyModel& body);
 [[nodiscard]] std::vector<Eigen::Vector3d> landmark_positions(const BodyModel& body, std::span<const double> pose);
 
+// The zero pose with the lowest vertex on the floor y = 0 and the root above the origin, for skeletons whose root has a
+// translation root_ty; otherwise zeros. [D]
+[[nodiscard]] std::vector<double> standing_pose(const BodyModel& body);
+
 // The same body with about `num_vertices` vertices: still closed, vertices kept where they were, outline kept.
 // Errors: throws std::invalid_argument when asked for fewer than 100.
 [[nodiscard]] BodyModel level_of_detail(const BodyModel& body, int num_vertices);

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "silpose/base/result.h"
@@ -43,7 +45,9 @@ class MakeHumanData {
 // Errors: height or weight that the sliders cannot reach; names the reachable range.
 Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenotype);
 
-// The 37-DOF skeleton with given joint positions in the zero pose [20], world coordinates, metres.
-Skeleton human_skeleton(std::span<const Eigen::Vector3d> joint_in_world);
+// The 37-DOF skeleton with given joint positions in the zero pose [20], world coordinates, metres. Only differences of
+// positions matter: the root's own place is the pose's root_tx, root_ty, root_tz.
+// Source: thesis Table 2.1 (cormier2019); signs, orders and limits: docs/formats.md.
+[[nodiscard]] Skeleton human_skeleton(std::span<const Eigen::Vector3d> joint_in_world);
 
 }  // namespace silpose

@@ -19,6 +19,7 @@ namespace silpose {
 
 // One degree of freedom: a translation along, or a rotation about, `axis`: a unit vector in the joint's own frame, whose
 // axes are the world's in the zero pose. Joint::dof_indices tells the order in which a joint's rotations are applied.
+// Translations come before (outside) all rotations of their joint: those of a root without offset are its world position.
 struct Dof {
   std::string name;              // column without its unit: "right_thigh_rx", "root_tx"
   int joint_idx = 0;
@@ -34,7 +35,7 @@ struct Joint {
   std::string name;
   int parent_idx = -1;                                       // -1: the root; always < own index
   Eigen::Vector3d offset_in_parent = Eigen::Vector3d::Zero();  // metres, in the zero pose
-  std::vector<int> dof_indices;                              // rotations in order of application, outermost first
+  std::vector<int> dof_indices = {};                           // rotations in order of application, outermost first
 };
 
 class Skeleton {
@@ -63,14 +64,24 @@ class Skeleton {
   // Brings a pose inside the limits: clamps, and wraps periodic DOF. Translations are left alone.
   void clamp(std::span<double> pose) const;
 
-  // Natural units to NPSU (0 at the lower limit, 1 at the upper) and back. [D]
+  // Natural units to NPSU (0 at the lower limit, 1 at the upper) and back, linear everywhere: nothing is clamped or
+  // wrapped. [D]
   [[nodiscard]] std::vector<double> normalise(std::span<const double> pose) const;
   [[nodiscard]] std::vector<double> denormalise(std::span<const double> npsu) const;
 
  private:
+  // What forward kinematics does, step by step: one entry a DOF in order of application, joints in index order.
+  struct Step {
+    int dof_idx = 0;
+    int cardinal = -1;  // 0, 1, 2: the axis is +-x, +-y, +-z; -1: any other
+    double sign = 1;    // of a cardinal axis
+    bool is_translation = false;
+  };
   std::string name_;
   std::vector<Joint> joints_;
   std::vector<Dof> dofs_;
+  std::vector<Step> steps_;
+  std::vector<size_t> step_start_;  // [J + 1] steps of joint j: step_start_[j] to step_start_[j + 1]
 };
 
 }  // namespace silpose
