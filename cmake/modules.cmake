@@ -23,7 +23,8 @@ endfunction()
 # What every target of ours is compiled with; an interface target, so that nothing leaks into consumers.
 add_library(silpose_build_options INTERFACE)
 target_compile_features(silpose_build_options INTERFACE cxx_std_20)
-target_compile_options(silpose_build_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror)
+target_compile_options(silpose_build_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+                       -Wno-missing-field-initializers -Werror)
 if(SILPOSE_SANITIZE)
   target_compile_options(silpose_build_options INTERFACE -fsanitize=${SILPOSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(silpose_build_options INTERFACE -fsanitize=${SILPOSE_SANITIZE})
