@@ -22,8 +22,8 @@ struct Phenotype {
   double muscle = 0.5;              // 0 to 1
 };
 
-// "human", "human:age=30,sex=f,height=1.62,weight=58,muscle=0.6". sex: f, m or 0..1. (dof= is read by the caller.)
-// Errors: unknown key, not a number, out of range; names the key.
+// "human", "human:age=30,sex=f,height=1.62,weight=58,muscle=0.6". sex: f, m or 0..1. dof= is left to the caller.
+// Errors: unknown or repeated key, not a number, out of range; names the key.
 Result<Phenotype> parse_phenotype(const std::string& text);
 
 class MakeHumanData {

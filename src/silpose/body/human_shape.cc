@@ -1,0 +1,175 @@
+#include "silpose/body/human_shape.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace silpose {
+namespace {
+
+struct Label {
+  const char* name;
+  double weight;
+};
+
+// Hat functions over the anchors 0, 1/2, 1.
+std::array<Label, 3> three_labels(const char* low, const char* middle, const char* high, double x) {
+  return {{{low, std::max(0.0, 1 - 2 * x)}, {middle, 1 - std::abs(2 * x - 1)}, {high, std::max(0.0, 2 * x - 1)}}};
+}
+
+// Calls use(target name, coefficient) for every macro target with a coefficient: the product of its labels' weights.
+template <class Use>
+void for_each_target(const Sliders& s, const Use& use) {
+  const double old = std::clamp(3 * s.age - 2, 0.0, 1.0);
+  const auto muscles = three_labels("minmuscle", "averagemuscle", "maxmuscle", s.muscle);
+  const auto weights = three_labels("minweight", "averageweight", "maxweight", s.weight);
+  for (const Label& gender : {Label{"male", 1 - s.gender}, Label{"female", s.gender}}) {
+    for (const Label& age : {Label{"young", 1 - old}, Label{"old", old}}) {
+      const double who_weight = gender.weight * age.weight;
+      if (who_weight == 0) continue;
+      const std::string who = fmt::format("{}-{}", gender.name, age.name);
+      for (const char* race : {"african", "asian", "caucasian"}) use(fmt::format("{}-{}", race, who), who_weight / 3);
+      for (const Label& muscle : muscles) {
+        for (const Label& weight : weights) {
+          const double build_weight = who_weight * muscle.weight * weight.weight;
+          if (build_weight == 0) continue;
+          const std::string build = fmt::format("{}-{}-{}", who, muscle.name, weight.name);
+          use("universal-" + build, build_weight);
+          use(build + "-minheight", build_weight * (1 - s.height));
+          use(build + "-maxheight", build_weight * s.height);
+          use(build + "-idealproportions", build_weight * (1 - s.proportions));
+          use(build + "-uncommonproportions", build_weight * s.proportions);
+        }
+      }
+    }
+  }
+}
+
+// The shape is linear in the height slider, and between neighbouring anchors in the weight slider: six shapes give all.
+class ShapeGrid {
+ public:
+  ShapeGrid(const MakeHumanMesh& base, const std::map<std::string, MakeHumanTarget>& targets, Sliders sliders)
+      : faces_(base.body_faces), blend_(kNumBodyVertices) {
+    for (int w = 0; w < 3; ++w) {
+      for (int h = 0; h < 2; ++h) {
+        sliders.weight = 0.5 * w;
+        sliders.height = h;
+        shapes_[w][h] = shape_vertices(base, targets, sliders);
+        shapes_[w][h].resize(kNumBodyVertices);
+      }
+    }
+  }
+  double stature(double weight, double height) { return stature_m(blend(weight, height)); }
+  double mass(double weight, double height) { return mass_kg(blend(weight, height), faces_); }
+
+ private:
+  std::span<const Eigen::Vector3f> blend(double weight, double height) {
+    const int w = weight < 0.5 ? 0 : 1;
+    const double upper = 2 * weight - w;
+    const float c00 = static_cast<float>((1 - upper) * (1 - height)), c01 = static_cast<float>((1 - upper) * height);
+    const float c10 = static_cast<float>(upper * (1 - height)), c11 = static_cast<float>(upper * height);
+    for (size_t v = 0; v < blend_.size(); ++v) {
+      blend_[v] = c00 * shapes_[w][0][v] + c01 * shapes_[w][1][v] + c10 * shapes_[w + 1][0][v] +
+                  c11 * shapes_[w + 1][1][v];
+    }
+    return blend_;
+  }
+  std::span<const Face> faces_;
+  std::vector<Eigen::Vector3f> shapes_[3][2];
+  std::vector<Eigen::Vector3f> blend_;
+};
+
+// The argument in [0, 1] at which a rising function takes `target`, to `tolerance` of its value.
+template <class Function>
+double bisect(const Function& f, double target, double tolerance) {
+  double low = 0, high = 1, middle = 0.5;
+  for (int i = 0; i < 40; ++i) {
+    middle = (low + high) / 2;
+    const double value = f(middle);
+    if (std::abs(value - target) < tolerance) break;
+    (value < target ? low : high) = middle;
+  }
+  return middle;
+}
+
+}  // namespace
+
+double age_slider(double years) {
+  // Source: bregier2025, sampling tables: adult ages in years and the slider's value.
+  constexpr std::array<std::pair<double, double>, 4> kTable = {{{16, .67}, {18, .77}, {64, .83}, {110, 1}}};
+  years = std::clamp(years, kTable.front().first, kTable.back().first);
+  size_t i = 1;
+  while (years > kTable[i].first) ++i;
+  const auto& [y0, a0] = kTable[i - 1];
+  const auto& [y1, a1] = kTable[i];
+  return a0 + (a1 - a0) * (years - y0) / (y1 - y0);
+}
+
+double mean_height_slider(double sex) {
+  // Source: bregier2025: means of the Beta distributions that fit men and women.
+  return 0.391 + (0.347 - 0.391) * sex;
+}
+
+std::vector<Eigen::Vector3f> shape_vertices(const MakeHumanMesh& base,
+                                            const std::map<std::string, MakeHumanTarget>& targets,
+                                            const Sliders& sliders) {
+  std::vector<Eigen::Vector3f> vertices = base.vertices;
+  for_each_target(sliders, [&](const std::string& name, double coefficient) {
+    const MakeHumanTarget& target = targets.at(name);
+    const float c = static_cast<float>(coefficient);
+    for (size_t i = 0; i < target.offset.size(); ++i) vertices[target.vertex_idx[i]] += c * target.offset[i];
+  });
+  return vertices;
+}
+
+double stature_m(std::span<const Eigen::Vector3f> vertices) {
+  float lowest = vertices[0].y(), highest = vertices[0].y();
+  for (size_t v = 0; v < kNumBodyVertices; ++v) {
+    lowest = std::min(lowest, vertices[v].y());
+    highest = std::max(highest, vertices[v].y());
+  }
+  return 0.1 * static_cast<double>(highest - lowest);
+}
+
+double mass_kg(std::span<const Eigen::Vector3f> vertices, std::span<const Face> body_faces) {
+  double six_volumes = 0;
+  for (const Face& face : body_faces) {
+    const Eigen::Vector3d a = vertices[face[0]].cast<double>(), b = vertices[face[1]].cast<double>(),
+                          c = vertices[face[2]].cast<double>();
+    six_volumes += a.dot(b.cross(c));
+  }
+  constexpr double kDensity = 980;  // kg/m3
+  return kDensity * six_volumes / 6 * 1e-3;
+}
+
+Result<Sliders> solve_sliders(const MakeHumanMesh& base, const std::map<std::string, MakeHumanTarget>& targets,
+                              const Phenotype& phenotype) {
+  Sliders sliders{.gender = phenotype.sex, .age = age_slider(phenotype.age_years), .muscle = phenotype.muscle};
+  sliders.height = mean_height_slider(phenotype.sex);
+  if (!phenotype.height_m && !phenotype.weight_kg) return sliders;
+
+  ShapeGrid grid(base, targets, sliders);
+  const auto height_at = [&](double weight) {
+    if (!phenotype.height_m) return sliders.height;
+    return bisect([&](double h) { return grid.stature(weight, h); }, *phenotype.height_m, 1e-5);
+  };
+  if (phenotype.height_m) {
+    const double lowest = grid.stature(0.5, 0), highest = grid.stature(0.5, 1);
+    if (*phenotype.height_m < lowest || *phenotype.height_m > highest) {
+      return error("height: {:.3f} m is out of this body's range, {:.2f} to {:.2f} m", *phenotype.height_m, lowest,
+                   highest);
+    }
+  }
+  if (phenotype.weight_kg) {
+    const double lightest = grid.mass(0, height_at(0)), heaviest = grid.mass(1, height_at(1));
+    if (*phenotype.weight_kg < lightest || *phenotype.weight_kg > heaviest) {
+      return error("weight: {:.1f} kg is out of this body's range, {:.1f} to {:.1f} kg", *phenotype.weight_kg,
+                   lightest, heaviest);
+    }
+    sliders.weight = bisect([&](double w) { return grid.mass(w, height_at(w)); }, *phenotype.weight_kg, 1e-3);
+  }
+  sliders.height = height_at(sliders.weight);
+  return sliders;
+}
+
+}  // namespace silpose

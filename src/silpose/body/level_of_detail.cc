@@ -1,0 +1,39 @@
+#include <meshoptimizer.h>
+
+#include "silpose/base/check.h"
+#include "silpose/body/body_model.h"
+
+namespace silpose {
+
+BodyModel level_of_detail(const BodyModel& body, int num_vertices) {
+  check(num_vertices >= 100, "level_of_detail: {} vertices are too few", num_vertices);
+  const std::vector<Eigen::Vector3f>& x = body.rest.vertices;
+  std::vector<uint32_t> indices;
+  for (const Face& face : body.rest.faces) indices.insert(indices.end(), face.begin(), face.end());
+  std::vector<uint32_t> kept(indices.size());
+  const size_t target = 3 * 2 * static_cast<size_t>(num_vertices - 2);
+  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), x[0].data(), x.size(),
+                               sizeof(Eigen::Vector3f), target, 1.0f));
+  BodyModel out = body;
+  out.rest = {};
+  out.skin = {.row_start = {0}, .joint_idx = {}, .weight = {}};
+  constexpr uint32_t kUnused = ~0u;
+  std::vector<uint32_t> new_from_old(x.size(), kUnused);
+  for (const uint32_t v : kept) new_from_old[v] = 0;
+  for (size_t v = 0; v < x.size(); ++v) {
+    if (new_from_old[v] == kUnused) continue;
+    new_from_old[v] = static_cast<uint32_t>(out.rest.vertices.size());
+    out.rest.vertices.push_back(x[v]);
+    for (uint32_t i = body.skin.row_start[v]; i < body.skin.row_start[v + 1]; ++i) {
+      out.skin.joint_idx.push_back(body.skin.joint_idx[i]);
+      out.skin.weight.push_back(body.skin.weight[i]);
+    }
+    out.skin.row_start.push_back(static_cast<uint32_t>(out.skin.weight.size()));
+  }
+  for (size_t i = 0; i < kept.size(); i += 3) {
+    out.rest.faces.push_back({new_from_old[kept[i]], new_from_old[kept[i + 1]], new_from_old[kept[i + 2]]});
+  }
+  return out;
+}
+
+}  // namespace silpose
