@@ -1,11 +1,16 @@
 // Silhouettes of posed meshes: from vertices in pixels to a Mask. Two ways that agree to the pixel: a plain reference
 // (every triangle filled) and the fast one (winding number of the outline only).
-// A pixel is set when its centre lies in some projected triangle. Shared rule for both: vertices are rounded to a grid of
-// 1/256 raster pixel first; a triangle with a vertex nearer than PinholeCamera::kNear is left out.
+// A pixel is set when its centre lies in some projected triangle (half-open: centres on a left or top edge are inside).
+// Shared rule for both: vertices are rounded to a grid of 1/256 raster pixel first (raster_grid.h); a triangle with a
+// vertex nearer than PinholeCamera::kNear is left out.
 // Threads: OutlineRenderer's scratch belongs to one thread; the rest are pure functions.
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,11 +22,18 @@
 
 namespace silpose {
 
-// Which face lies across each edge of each face; made once per mesh. Errors: none; a missing neighbour is -1.
+// Which face lies across each edge of each face; made once per mesh. Neighbours run along their edge in opposite
+// directions; where more than two faces meet they are paired as far as they go. A missing neighbour is -1.
 struct EdgeTopology {
   explicit EdgeTopology(std::span<const Face> faces);
   std::vector<Face> faces;                        // [F]
   std::vector<std::array<int32_t, 3>> neighbour;  // [F] across edges (0,1), (1,2), (2,0)
+
+  // Every edge once: from `vertices[0]` to `vertices[1]` along faces[0], the other way along faces[1]; F stands for none.
+  struct Edges {
+    std::vector<std::array<uint32_t, 2>> vertices, faces;
+  } edges;
+  uint32_t num_vertices = 0;  // largest index + 1
 };
 
 // Vertices [V] in world coordinates to image pixels [V]; vertices nearer than kNear become NaN.
@@ -32,15 +44,16 @@ void project_vertices(const PinholeCamera& camera, std::span<const Eigen::Vector
 void draw_silhouette_reference(std::span<const Eigen::Vector2f> pixels, std::span<const Face> faces,
                                const Window& window, Mask& mask);
 
-// Smallest image box [x0, y0, x1, y1] around the projected vertices that are seen; nothing when there is none.
-struct PixelBounds { double x0, y0, x1, y1; };
+// Smallest image box around the projected vertices that are seen; nothing when there is none.
 std::optional<PixelBounds> pixel_bounds(std::span<const Eigen::Vector2f> pixels);
 
 // The fast renderer. Source: non-zero winding rule; every triangle turned to face the camera adds +-1 along the edges
 // whose neighbour faces away or is missing; crossings per scanline are summed along the row.
 class OutlineRenderer {
  public:
-  explicit OutlineRenderer(const EdgeTopology& topology);
+  explicit OutlineRenderer(const EdgeTopology& topology);  // keeps a reference
+  OutlineRenderer(OutlineRenderer&&) noexcept;
+  ~OutlineRenderer();
 
   void draw(std::span<const Eigen::Vector2f> pixels, const Window& window, Mask& mask);
 
@@ -52,27 +65,36 @@ class OutlineRenderer {
   Counts count(std::span<const Eigen::Vector2f> pixels, const Window& window, const Mask& observed);
 
  private:
-  const EdgeTopology* topology_;
-  // scratch is the implementer's business
+  void scan(std::span<const Eigen::Vector2f> pixels, const Window& window);
+  struct Scratch;
+  std::unique_ptr<Scratch> scratch_;
 };
 
 // A batch: poses [N, D] (row-major) to counts against one observed mask of the window's size. The window is in image
 // pixels of `camera`. Runs on all cores (base/parallel.h); the result does not depend on how many.
-struct BatchView { const double* data; size_t num_poses; size_t num_dofs; size_t stride; };  // row n at data + n * stride
+struct BatchView {
+  const double* data;
+  size_t num_poses, num_dofs, stride;  // row n at data + n * stride
+};
 class BatchRenderer {
  public:
   BatchRenderer(std::shared_ptr<const BodyModel> body, PinholeCamera camera);
+  // Poses with a number that is not finite count {0, 0}. REQUIRES: equal sizes of window, mask and `out`; num_dofs = D.
   void counts(const BatchView& poses, const Window& window, const Mask& observed,
               std::span<OutlineRenderer::Counts> out) const;
-  // Each silhouette cropped to its own bounding box and scaled to the observed mask's size (see
-  // shape/normalised_silhouette.h), then compared. An unseen body counts {0, 0}.
+  // Each silhouette cropped to the bounding box of its part inside the picture and scaled to the observed mask's size
+  // (see shape/normalised_silhouette.h), then compared. An unseen body counts {0, 0}.
   void counts_cropped(const BatchView& poses, const Mask& observed_cropped,
                       std::span<OutlineRenderer::Counts> out) const;
   [[nodiscard]] const BodyModel& body() const;
   [[nodiscard]] const PinholeCamera& camera() const;
+
+ private:
+  struct Impl;
+  std::shared_ptr<const Impl> impl_;
 };
 
-// One pose over the whole image: what reports and `evaluate` compare.
+// One pose over the whole image, by the reference: what reports and `evaluate` compare.
 Mask render_silhouette(const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose);
 
 }  // namespace silpose

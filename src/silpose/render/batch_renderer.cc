@@ -1,0 +1,83 @@
+#include <utility>
+
+#include "silpose/base/check.h"
+#include "silpose/base/parallel.h"
+#include "silpose/render/outline_scan.h"
+#include "silpose/render/projected_skin.h"
+#include "silpose/render/silhouette.h"
+#include "silpose/render/span_count.h"
+#include "silpose/shape/normalised_silhouette.h"
+
+namespace silpose {
+
+struct BatchRenderer::Impl {
+  Impl(std::shared_ptr<const BodyModel> the_body, PinholeCamera the_camera)
+      : body(std::move(the_body)), camera(std::move(the_camera)), skin(*body, camera), topology(skin.faces()) {}
+
+  // choose_window(projected, outline) tells the window a projected pose is drawn into, or nothing when it is not seen.
+  template <class ChooseWindow>
+  void counts(const BatchView& poses, const Mask& observed, std::span<OutlineRenderer::Counts> out,
+              const ChooseWindow& choose_window) const {
+    check(out.size() == poses.num_poses, "BatchRenderer: {} poses, room for {}", poses.num_poses, out.size());
+    check(poses.num_dofs == static_cast<size_t>(body->skeleton.num_dofs()), "BatchRenderer: poses of {} DOF for {}",
+          poses.num_dofs, body->skeleton.num_dofs());
+    constexpr size_t kGrain = 32;
+    parallel_for(poses.num_poses, kGrain, [&](size_t begin, size_t end) {
+      ProjectedSkin::Scratch projected;
+      OutlineScan outline(topology);
+      for (size_t n = begin; n < end; ++n) {
+        out[n] = {};
+        if (!skin.project({poses.data + n * poses.stride, poses.num_dofs}, projected)) continue;
+        const std::optional<Window> window = choose_window(projected, outline);
+        if (!window) continue;
+        scan(*window, projected, outline);
+        out[n] = count_spans(outline, observed);
+      }
+    });
+  }
+
+  void scan(const Window& window, ProjectedSkin::Scratch& projected, OutlineScan& outline) const {
+    skin.round(window, projected);
+    outline.scan(projected.points, projected.some_unseen, window.width, window.height);
+  }
+
+  // Bounds of the part inside the picture. Only a body cut by the picture's border needs drawing for it.
+  std::optional<PixelBounds> bounds_in_picture(ProjectedSkin::Scratch& projected, OutlineScan& outline) const {
+    const PixelBounds& bounds = projected.bounds;
+    if (bounds.x0 >= 0 && bounds.y0 >= 0 && bounds.x1 <= camera.width && bounds.y1 <= camera.height) return bounds;
+    scan({.width = camera.width, .height = camera.height}, projected, outline);
+    return bounds_of_spans(outline);
+  }
+
+  std::shared_ptr<const BodyModel> body;
+  PinholeCamera camera;
+  ProjectedSkin skin;
+  EdgeTopology topology;
+};
+
+BatchRenderer::BatchRenderer(std::shared_ptr<const BodyModel> body, PinholeCamera camera) {
+  check(body != nullptr && !body->rest.faces.empty(), "BatchRenderer: no body");
+  impl_ = std::make_shared<const Impl>(std::move(body), std::move(camera));
+}
+
+void BatchRenderer::counts(const BatchView& poses, const Window& window, const Mask& observed,
+                           std::span<OutlineRenderer::Counts> out) const {
+  check(observed.width() == window.width && observed.height() == window.height,
+        "BatchRenderer: mask of {}x{} for a window of {}x{}", observed.width(), observed.height(), window.width,
+        window.height);
+  impl_->counts(poses, observed, out, [&](auto&, auto&) { return window; });
+}
+
+void BatchRenderer::counts_cropped(const BatchView& poses, const Mask& observed_cropped,
+                                   std::span<OutlineRenderer::Counts> out) const {
+  impl_->counts(poses, observed_cropped, out, [&](auto& projected, auto& outline) -> std::optional<Window> {
+    const auto bounds = impl_->bounds_in_picture(projected, outline);
+    if (!bounds) return std::nullopt;
+    return window_of(*bounds, observed_cropped.width(), observed_cropped.height());
+  });
+}
+
+const BodyModel& BatchRenderer::body() const { return *impl_->body; }
+const PinholeCamera& BatchRenderer::camera() const { return impl_->camera; }
+
+}  // namespace silpose

@@ -1,0 +1,43 @@
+#include "silpose/base/check.h"
+#include "silpose/render/outline_scan.h"
+#include "silpose/render/silhouette.h"
+#include "silpose/render/span_count.h"
+
+namespace silpose {
+
+struct OutlineRenderer::Scratch {
+  explicit Scratch(const EdgeTopology& topology) : outline(topology) {}
+  OutlineScan outline;
+  std::vector<GridPoint> points;
+};
+
+OutlineRenderer::OutlineRenderer(const EdgeTopology& topology) : scratch_(std::make_unique<Scratch>(topology)) {}
+OutlineRenderer::OutlineRenderer(OutlineRenderer&&) noexcept = default;
+OutlineRenderer::~OutlineRenderer() = default;
+
+void OutlineRenderer::scan(std::span<const Eigen::Vector2f> pixels, const Window& window) {
+  scratch_->points.resize(pixels.size());
+  const bool some_unseen = round_to_grid(pixels, window, scratch_->points);
+  scratch_->outline.scan(scratch_->points, some_unseen, window.width, window.height);
+}
+
+void OutlineRenderer::draw(std::span<const Eigen::Vector2f> pixels, const Window& window, Mask& mask) {
+  if (mask.width() == window.width && mask.height() == window.height) {
+    mask.clear();
+  } else {
+    mask = Mask(window.width, window.height);
+  }
+  scan(pixels, window);
+  set_spans(scratch_->outline, mask);
+}
+
+OutlineRenderer::Counts OutlineRenderer::count(std::span<const Eigen::Vector2f> pixels, const Window& window,
+                                               const Mask& observed) {
+  check(observed.width() == window.width && observed.height() == window.height,
+        "OutlineRenderer: mask of {}x{} for a window of {}x{}", observed.width(), observed.height(), window.width,
+        window.height);
+  scan(pixels, window);
+  return count_spans(scratch_->outline, observed);
+}
+
+}  // namespace silpose

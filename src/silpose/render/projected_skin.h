@@ -1,0 +1,65 @@
+// ProjectedSkin: from a pose straight to pixels. Camera and, where the lens is straight, its intrinsics are folded into
+// the joint matrices, so that skinning yields homogeneous pixels. Vertices are handled four at a time, sorted by the
+// joints that move them; their order ("slots") is therefore not the mesh's, and faces() are given in slots.
+// Source: linear blend skinning (references.bib: magnenat1988).
+// Threads: constant after construction; one Scratch per thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "silpose/body/body_model.h"
+#include "silpose/geometry/camera.h"
+#include "silpose/render/raster_grid.h"
+#include "silpose/render/window.h"
+
+namespace silpose {
+
+class ProjectedSkin {
+ public:
+  ProjectedSkin(const BodyModel& body, const PinholeCamera& camera);  // keeps references
+
+  [[nodiscard]] std::span<const Face> faces() const { return faces_; }
+  [[nodiscard]] size_t num_slots() const { return 4 * chunks_.size(); }
+
+  // What one thread needs, and where project() leaves the pixels.
+  struct Scratch {
+    std::vector<Rigid3> world_from_joint;
+    std::vector<Eigen::Array4f> matrices;         // [J, 12] each number four times
+    std::vector<Eigen::Array4f> x, y, depth;      // [chunks] pixels; NaN where unseen
+    PixelBounds bounds;                           // of what is seen
+    bool some_unseen = false;
+    std::vector<GridPoint> points;                // [slots] what round() makes of them
+  };
+
+  // Projects a pose [D]. False when nothing is seen, or when the pose has a number that is not finite.
+  bool project(std::span<const double> pose, Scratch& scratch) const;
+
+  // Rounds the pixels to a window's grid, into scratch.points.
+  void round(const Window& window, Scratch& scratch) const;
+
+ private:
+  // Four vertices and the joints that move any of them: entries [begin, end).
+  struct Chunk {
+    uint32_t begin = 0, end = 0;
+  };
+  // One joint's part of a chunk: rest coordinates times weight, and the weight.
+  struct Entry {
+    Eigen::Array4f x, y, z, w;
+  };
+
+  void set_matrices(std::span<const double> pose, Scratch& scratch) const;
+  void distort(Scratch& scratch) const;
+  bool leave_out_unseen(Scratch& scratch) const;
+
+  const BodyModel* body_;
+  const PinholeCamera* camera_;
+  std::vector<Face> faces_;
+  std::vector<Chunk> chunks_;
+  std::vector<Entry> entries_;
+  std::vector<uint32_t> entry_joint_;
+};
+
+}  // namespace silpose

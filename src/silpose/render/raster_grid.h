@@ -1,0 +1,49 @@
+// The grid of 1/256 raster pixel that every silhouette is drawn on, and the rounding to it. On the grid all decisions
+// are exact: coordinates stay within +-2^25, so products of differences are exact in int64_t and in double.
+// Threads: values and pure functions.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "silpose/render/window.h"
+
+namespace silpose {
+
+struct GridPoint {
+  int32_t x = 0, y = 0;
+  [[nodiscard]] bool unseen() const { return x == std::numeric_limits<int32_t>::min(); }
+};
+
+inline constexpr int kGridBits = 8;
+inline constexpr int32_t kGridPerPixel = 1 << kGridBits;
+inline constexpr int32_t kGridHalfPixel = kGridPerPixel / 2;
+inline constexpr int32_t kGridLimit = 1 << 25;
+inline constexpr GridPoint kUnseenPoint{std::numeric_limits<int32_t>::min(), std::numeric_limits<int32_t>::min()};
+
+// The first raster row or column whose centre lies at or beyond a grid coordinate.
+inline int32_t first_centre_from(int32_t grid) { return (grid + kGridPerPixel - 1 - kGridHalfPixel) >> kGridBits; }
+
+// Image coordinate to grid: nearest, halves away from zero, clamped to the limit; NaN goes to the lower limit.
+struct GridAxis {
+  GridAxis(double origin, double scale)
+      : slope(static_cast<float>(scale * kGridPerPixel)), offset(static_cast<float>(-origin * scale * kGridPerPixel)) {}
+  float slope, offset;
+
+  [[nodiscard]] int32_t round(float pixel) const {
+    constexpr auto kLimit = static_cast<float>(kGridLimit);
+    float grid = pixel * slope + offset;
+    grid = grid > -kLimit ? grid : -kLimit;
+    grid = grid < kLimit ? grid : kLimit;
+    const auto whole = static_cast<int32_t>(grid);
+    const float rest = grid - static_cast<float>(whole);
+    return whole + static_cast<int32_t>(rest >= 0.5f) - static_cast<int32_t>(rest <= -0.5f);
+  }
+};
+
+// Image pixels [V] to grid points [V] of a window; NaN becomes kUnseenPoint. Returns whether there was any.
+bool round_to_grid(std::span<const Eigen::Vector2f> pixels, const Window& window, std::span<GridPoint> points);
+
+}  // namespace silpose
