@@ -9,17 +9,6 @@
 namespace silpose {
 namespace {
 
-// The whole image, drawn so that the longer side of `box` takes `resolution` raster pixels; never enlarged.
-Window image_window(const Mask& mask, const Box& box, int resolution) {
-  const double scale = std::min(1.0, static_cast<double>(resolution) / std::max({box.width, box.height, 1}));
-  return {.x0 = 0,
-          .y0 = 0,
-          .scale_x = scale,
-          .scale_y = scale,
-          .width = std::max(1, static_cast<int>(std::lround(mask.width() * scale))),
-          .height = std::max(1, static_cast<int>(std::lround(mask.height() * scale)))};
-}
-
 // Differing pixels over the sum of both areas. A body that is not seen at all shares nothing with what was observed.
 double area_distance(const OutlineRenderer::Counts& counts, int64_t observed_area) {
   const int64_t sum = counts.model + observed_area;
@@ -56,9 +45,11 @@ Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations
     Evidence::View view;
     if (!observation.trust.nothing_found && !observation.box.empty()) {
       if (options_.comparison == Comparison::kCropped) {
-        view.observed = normalised_silhouette(observation.mask, options_.resolution);
+        view.observed = normalised_silhouette(observation.mask, options_.resolution, options_.resolution);
       } else {
-        view.window = image_window(observation.mask, observation.box, options_.resolution);
+        // Never enlarged: there is nothing to see between the pixels of a small subject.
+        const double longer_side = std::max({observation.box.width, observation.box.height, 1});
+        view.window = window_of_image(camera.width, camera.height, std::min(1.0, options_.resolution / longer_side));
         view.observed = resample_mask(observation.mask, view.window);
       }
       view.area = view.observed.count();

@@ -1,0 +1,137 @@
+#include "silpose/likelihood/silhouette_likelihood.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "silpose/body/test_body.h"
+
+namespace silpose {
+namespace {
+
+class SilhouetteLikelihoodTest : public ::testing::Test {
+ protected:
+  SilhouetteLikelihood make(LikelihoodOptions options = {}) const {
+    return SilhouetteLikelihood({std::make_shared<BatchRenderer>(body_, camera_)}, options);
+  }
+  Observation observe(std::span<const double> pose) const {
+    Observation observation;
+    observation.mask = render_silhouette(*body_, camera_, pose);
+    observation.box = observation.mask.bounding_box();
+    return observation;
+  }
+  static StateBatch batch(const std::vector<std::vector<double>>& poses) {
+    StateBatch states(static_cast<Eigen::Index>(poses.size()), static_cast<Eigen::Index>(poses.front().size()));
+    for (size_t n = 0; n < poses.size(); ++n) {
+      for (size_t d = 0; d < poses[n].size(); ++d) {
+        states(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>(d)) = poses[n][d];
+      }
+    }
+    return states;
+  }
+
+  std::shared_ptr<const BodyModel> body_ = std::make_shared<BodyModel>(make_test_body());
+  PinholeCamera camera_ = look_at_camera(320, 240, 300, {0, 1, 4}, {0, 0.75, 0});
+  std::vector<double> pose_ = {0.1, 0.5, 0, 0, 0.2, 0.3, 0.1, -0.2};
+};
+
+TEST_F(SilhouetteLikelihoodTest, TheTruePoseIsBestAndADisjointOneWorst) {
+  const auto likelihood = make();
+  const Observation observation = observe(pose_);
+  const Evidence evidence = likelihood.prepare({&observation, 1});
+  auto near = pose_, far = pose_;
+  near[5] += 0.2;
+  far[0] += 1.5;
+  std::vector<double> distances(3);
+  likelihood.distances(evidence, batch({pose_, near, far}), distances);
+  EXPECT_LT(distances[0], 0.02);  // drawn at the raster's resolution, observed at the image's
+  EXPECT_GT(distances[1], distances[0] + 0.02);
+  EXPECT_EQ(distances[2], 1);
+  std::vector<double> values(3);
+  likelihood.log_likelihood(evidence, batch({pose_, near, far}), values);
+  for (size_t n = 0; n < 3; ++n) EXPECT_DOUBLE_EQ(values[n], -likelihood.options().sharpness * distances[n]);
+}
+
+TEST_F(SilhouetteLikelihoodTest, ExtraColumnsAreNotRead) {
+  const auto likelihood = make();
+  const Observation observation = observe(pose_);
+  const Evidence evidence = likelihood.prepare({&observation, 1});
+  auto longer = pose_;
+  longer.resize(16, std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> plain(1), wide(1);
+  likelihood.log_likelihood(evidence, batch({pose_}), plain);
+  likelihood.log_likelihood(evidence, batch({longer}), wide);
+  EXPECT_EQ(plain, wide);
+}
+
+TEST_F(SilhouetteLikelihoodTest, CroppingForgetsPosition) {
+  const auto likelihood = make({.comparison = Comparison::kCropped, .resolution = 64});
+  const Observation observation = observe(pose_);
+  const Evidence evidence = likelihood.prepare({&observation, 1});
+  auto moved = pose_, bent = pose_;
+  moved[0] += 0.1;
+  moved[1] -= 0.1;
+  bent[5] -= 0.6;
+  std::vector<double> distances(3);
+  likelihood.distances(evidence, batch({pose_, moved, bent}), distances);
+  EXPECT_LT(distances[0], 0.03);
+  EXPECT_LT(distances[1], 0.06);
+  EXPECT_GT(distances[2], 0.15);
+}
+
+TEST_F(SilhouetteLikelihoodTest, ACameraThatSawNothingHasNoSay) {
+  const auto likelihood = make();
+  Observation nothing;
+  nothing.mask = Mask(320, 240);
+  nothing.trust = {.overall = 0, .nothing_found = true};
+  const Evidence evidence = likelihood.prepare({&nothing, 1});
+  EXPECT_EQ(evidence.views[0].trust, 0);
+  std::vector<double> values(1, 7.0);
+  likelihood.log_likelihood(evidence, batch({pose_}), values);
+  EXPECT_EQ(values[0], 0);
+}
+
+TEST_F(SilhouetteLikelihoodTest, TrustScalesTheSay) {
+  const auto likelihood = make();
+  Observation observation = observe(pose_);
+  auto off = pose_;
+  off[5] += 0.3;
+  std::vector<double> full(1), half(1);
+  likelihood.log_likelihood(likelihood.prepare({&observation, 1}), batch({off}), full);
+  observation.trust.overall = 0.5;
+  likelihood.log_likelihood(likelihood.prepare({&observation, 1}), batch({off}), half);
+  EXPECT_DOUBLE_EQ(half[0], full[0] / 2);
+}
+
+TEST_F(SilhouetteLikelihoodTest, TheDerivativePointsBackToTheTruth) {
+  const auto likelihood = make();
+  const Observation observation = observe(pose_);
+  const Evidence evidence = likelihood.prepare({&observation, 1});
+  std::vector<double> steps(8, 0.05);
+  for (const int d : {0, 1, 5, 7}) {
+    for (const double sign : {-1.0, 1.0}) {
+      auto off = pose_;
+      off[static_cast<size_t>(d)] += sign * 0.15;
+      const auto derivative = likelihood.derivative(evidence, off, steps);
+      EXPECT_LT(sign * derivative.gradient[d], 0) << "DOF " << d;
+    }
+  }
+}
+
+TEST_F(SilhouetteLikelihoodTest, RefusesTheWrongShapes) {
+  const auto likelihood = make();
+  Observation small;
+  small.mask = Mask(10, 10);
+  EXPECT_THROW((void)likelihood.prepare({&small, 1}), std::invalid_argument);
+  EXPECT_THROW((void)likelihood.prepare({}), std::invalid_argument);
+  EXPECT_THROW(make({.sharpness = std::nan("")}), std::invalid_argument);
+  EXPECT_THROW(make({.resolution = 2}), std::invalid_argument);
+  const Observation observation = observe(pose_);
+  std::vector<double> out(1);
+  EXPECT_THROW(likelihood.distances(likelihood.prepare({&observation, 1}), batch({{1, 2, 3}}), out),
+               std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace silpose

@@ -1,0 +1,48 @@
+// SamplingFilter: one particle filter, plain or annealed, over some of a body's DOF; the others are held. The presets'
+// pose filters are made of these.
+// Based on: annealing and limb crossover, deutscher2005; plain filter, cormier2019 sect. 2.4.
+// Threads: as PoseFilter.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "silpose/filter/annealed_filter.h"
+#include "silpose/filter/particle_filter.h"
+#include "silpose/likelihood/silhouette_likelihood.h"
+#include "silpose/motion/motion_model.h"
+#include "silpose/track/pose_filter.h"
+
+namespace silpose {
+
+class SamplingFilter {
+ public:
+  // `free_dofs` [D] tells which DOF move. `options` are resolved. The likelihood outlives the filter.
+  SamplingFilter(const TrackerOptions& options, const SilhouetteLikelihood& likelihood, std::vector<bool> free_dofs,
+                 uint64_t seed);
+
+  // Particles scattered about the starts by the motion model's noise of a few frames; better starts get more.
+  void start(std::span<const StartingPose> starts);
+
+  // `held` [D]: where the DOF that do not move are now.
+  FilterReport step(const Evidence& evidence, std::span<const double> held, double dt_s, StepSeconds& seconds);
+  FilterReport coast(double dt_s);
+
+  [[nodiscard]] const ParticleSet& particles() const;
+  [[nodiscard]] std::vector<double> estimate() const;  // [D]
+
+ private:
+  void hold(StateBatch& states, std::span<const double> held) const;
+
+  const TrackerOptions& options_;
+  const SilhouetteLikelihood& likelihood_;
+  std::vector<bool> free_dofs_;
+  uint64_t seed_;
+  std::unique_ptr<const MotionModel> motion_;
+  std::shared_ptr<const Resampler> resampler_;
+  std::variant<std::monostate, ParticleFilter, AnnealedFilter> filter_;
+};
+
+}  // namespace silpose

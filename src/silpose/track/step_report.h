@@ -1,0 +1,36 @@
+// StepReport: what one step of a tracker did, and how far to trust it.
+// Threads: a value.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "silpose/image/mask.h"
+#include "silpose/shape/observation.h"
+
+namespace silpose {
+
+// Seconds that the parts of a step took, summed over layers.
+struct StepSeconds {
+  double segment = 0, propagate = 0, likelihood = 0, resample = 0;
+};
+
+// What one step did.
+struct StepReport {
+  int64_t frame_idx = 0;
+  int64_t time_ns = 0;
+  enum class State { kWaiting, kInitialised, kTracked, kCoasted } state = State::kWaiting;
+  std::vector<double> pose;               // [D] the estimate (empty while waiting)
+  std::vector<double> mode;               // [D] the best particle
+  std::vector<double> spread;             // [D] weighted standard deviation
+  std::vector<Eigen::Vector3d> landmark_spread;  // [J + E] metres, as body's landmark_positions
+  double effective_sample_size = 0;
+  double visual_accuracy = 0;             // intersection over union in the first camera's image; 0 when coasted
+  std::vector<Trust> trust;               // [C]
+  std::vector<Mask> observed;             // [C] the masks that were used
+  StepSeconds seconds;
+  [[nodiscard]] double time_s() const { return static_cast<double>(time_ns) * 1e-9; }
+};
+
+}  // namespace silpose

@@ -1,0 +1,157 @@
+#include "silpose/track/tracker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "silpose/base/check.h"
+#include "silpose/base/clock.h"
+#include "silpose/base/parallel.h"
+#include "silpose/filter/estimate.h"
+#include "silpose/motion/common_poses.h"
+#include "silpose/segment/segmenter.h"
+#include "silpose/track/pose_filter.h"
+
+namespace silpose {
+namespace {
+
+// After coasting for longer than this the subject may be anywhere: the next good mask starts over.
+constexpr double kLongestCoast_s = 1.0;
+// Starting poses that the filter gets to choose from.
+constexpr size_t kNumStarts = 4;
+
+bool any_has_a_say(std::span<const Observation> observations) {
+  return std::any_of(observations.begin(), observations.end(),
+                     [](const Observation& o) { return !o.trust.nothing_found && o.trust.overall > 0; });
+}
+
+// Standard deviation of each landmark's coordinates over the particles. [J + E]
+std::vector<Eigen::Vector3d> landmark_spread(const BodyModel& body, const ParticleSet& particles) {
+  const size_t num_landmarks = static_cast<size_t>(body.skeleton.num_joints()) + body.end_points.size();
+  const auto num_dofs = static_cast<size_t>(body.skeleton.num_dofs());
+  const auto N = static_cast<size_t>(particles.size());
+  std::vector<std::vector<Eigen::Vector3d>> positions(N);
+  parallel_for(N, 64, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) {
+      positions[n] = landmark_positions(body, {particles.states.row(static_cast<Eigen::Index>(n)).data(), num_dofs});
+    }
+  });
+  const std::vector<double> weights = particles.weights();
+  std::vector<Eigen::Vector3d> spread(num_landmarks, Eigen::Vector3d::Zero());
+  for (size_t l = 0; l < num_landmarks; ++l) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero(), variance = Eigen::Vector3d::Zero();
+    for (size_t n = 0; n < N; ++n) mean += weights[n] * positions[n][l];
+    for (size_t n = 0; n < N; ++n) variance += weights[n] * (positions[n][l] - mean).cwiseAbs2();
+    spread[l] = variance.cwiseSqrt();
+  }
+  return spread;
+}
+
+}  // namespace
+
+struct Tracker::Impl {
+  explicit Impl(TrackerOptions given) : options(given.resolved()) {
+    const auto lod = std::make_shared<const BodyModel>(level_of_detail(*options.body, options.lod_vertices));
+    for (const PinholeCamera& camera : options.cameras) {
+      renderers.push_back(std::make_shared<const BatchRenderer>(lod, camera));
+    }
+    filter = make_pose_filter(options, renderers);
+    if (!options.proposal) options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton);
+  }
+
+  // Starting poses for what is seen: the given one, or by descent; the last estimate competes, too.
+  std::vector<StartingPose> starting_poses(std::span<const Observation> observations) const {
+    if (options.initial_pose && last_pose.empty()) return {{*options.initial_pose, 0}};
+    const SilhouetteLikelihood likelihood(renderers, {});
+    Rng rng(options.seed, static_cast<uint64_t>(steps));
+    StateBatch candidates = options.proposal->propose(observations.front(), 0, rng);
+    if (!last_pose.empty()) {
+      candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
+      candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
+    }
+    std::vector<StartingPose> starts = initialise(likelihood, likelihood.prepare(observations), candidates);
+    starts.resize(std::min(starts.size(), kNumStarts));
+    return starts;
+  }
+
+  void summarise(std::span<const Observation> observations, StepReport& report) {
+    const ParticleSet& particles = filter->particles();
+    const auto num_dofs = static_cast<Eigen::Index>(options.body->skeleton.num_dofs());
+    const StateBatch poses = particles.states.leftCols(num_dofs);
+    const std::vector<double> weights = particles.weights();
+    report.pose = filter->estimate();
+    const auto best = poses.row(mode_index(weights));
+    report.mode.assign(best.data(), best.data() + num_dofs);
+    std::vector<int> circular;
+    for (int d = 0; d < num_dofs; ++d) {
+      if (options.body->skeleton.dofs()[static_cast<size_t>(d)].is_periodic) circular.push_back(d);
+    }
+    report.spread = weighted_deviation(poses, weights, circular);
+    report.landmark_spread = landmark_spread(*options.body, particles);
+    if (report.state != StepReport::State::kCoasted) {
+      for (size_t c = 0; c < observations.size(); ++c) {
+        if (observations[c].trust.nothing_found) continue;
+        const Mask drawn = render_silhouette(*options.body, options.cameras[c], report.pose);
+        report.visual_accuracy = intersection_over_union(drawn, observations[c].mask);
+        break;
+      }
+    }
+    last_pose = report.pose;
+  }
+
+  TrackerOptions options;
+  std::vector<std::shared_ptr<const BatchRenderer>> renderers;  // of the level of detail, one a camera
+  std::unique_ptr<PoseFilter> filter;
+  std::vector<std::unique_ptr<Segmenter>> segmenters;  // online, one a camera; made when first needed
+  std::vector<double> last_pose;
+  bool started = false;
+  int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
+};
+
+Tracker::Tracker(TrackerOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+Tracker::~Tracker() = default;
+Tracker::Tracker(Tracker&&) noexcept = default;
+Tracker& Tracker::operator=(Tracker&&) noexcept = default;
+
+StepReport Tracker::step(std::span<const Observation> observations, int64_t frame_idx, int64_t time_ns) {
+  Impl& t = *impl_;
+  check(observations.size() == t.options.cameras.size(), "Tracker: {} observations for {} cameras",
+        observations.size(), t.options.cameras.size());
+  check(t.steps == 0 || time_ns > t.last_time_ns, "Tracker: time {} ns does not come after {} ns", time_ns,
+        t.last_time_ns);
+  StepReport report{.frame_idx = frame_idx, .time_ns = time_ns};
+  for (const Observation& observation : observations) {
+    report.trust.push_back(observation.trust);
+    report.observed.push_back(observation.mask);
+  }
+  const double dt_s = t.steps == 0 ? 0 : static_cast<double>(time_ns - t.last_time_ns) * 1e-9;
+  const bool seen = any_has_a_say(observations);
+  if (seen && t.started && static_cast<double>(time_ns - t.last_seen_ns) * 1e-9 > kLongestCoast_s) t.started = false;
+
+  if (seen && !t.started) {
+    const Stopwatch stopwatch;
+    t.filter->start(t.starting_poses(observations));
+    t.started = true;
+    report.state = StepReport::State::kInitialised;
+    report.seconds.propagate += stopwatch.seconds();
+    report.effective_sample_size = t.filter->step(observations, 0, report.seconds).effective_sample_size;
+  } else if (seen) {
+    report.state = StepReport::State::kTracked;
+    report.effective_sample_size = t.filter->step(observations, dt_s, report.seconds).effective_sample_size;
+  } else if (t.started) {
+    report.state = StepReport::State::kCoasted;
+    report.effective_sample_size = t.filter->coast(dt_s).effective_sample_size;
+  }
+  if (t.started) t.summarise(observations, report);
+
+  ++t.steps;
+  t.last_time_ns = time_ns;
+  if (seen) t.last_seen_ns = time_ns;
+  return report;
+}
+
+const TrackerOptions& Tracker::options() const { return impl_->options; }
+const StateBatch& Tracker::particles() const { return impl_->filter->particles().states; }
+std::span<const double> Tracker::log_weights() const { return impl_->filter->particles().log_weights; }
+
+}  // namespace silpose

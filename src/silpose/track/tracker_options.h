@@ -1,0 +1,45 @@
+// TrackerOptions: everything one can ask of a tracker, and the presets.
+// Threads: a value.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "silpose/body/body_model.h"
+#include "silpose/geometry/camera.h"
+#include "silpose/motion/proposal.h"
+
+namespace silpose {
+
+enum class Estimate { kMean, kMode, kCluster };
+
+struct TrackerOptions {
+  std::shared_ptr<const BodyModel> body;       // full mesh; the tracker makes its own level of detail
+  std::vector<PinholeCamera> cameras;          // [C]
+  std::string preset = "default";              // "default" or "thesis"; fills what is left unset below
+  std::optional<int> num_particles;            // per layer
+  std::optional<int> num_layers;               // 1: plain
+  std::optional<std::string> motion;           // motion/motion_model.h
+  std::optional<double> sigma_deg;             // of a typical rotational DOF per 1/30 s; the others scale with it
+  std::optional<std::string> resampling;       // filter/resampling.h
+  double resample_below = 1;                   // of n_eff / N; 1: every step
+  std::optional<double> regenerate;            // fraction of the comb
+  std::optional<double> sharpness;
+  std::optional<Estimate> estimate;
+  bool root_fixed = false;                     // the six root DOF stay where they started
+  int lod_vertices = 2000;
+  uint64_t seed = 1;
+  std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
+  std::shared_ptr<const Proposal> proposal;    // candidates for the start and for regeneration; absent: common poses
+
+  // Errors: throws std::invalid_argument that names the option and its value.
+  void check() const;
+
+  // The same with everything unset filled in from the preset.
+  [[nodiscard]] TrackerOptions resolved() const;
+};
+
+}  // namespace silpose

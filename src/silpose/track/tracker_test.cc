@@ -1,0 +1,154 @@
+#include "silpose/track/tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "silpose/base/parallel.h"
+#include "silpose/body/test_body.h"
+#include "silpose/render/silhouette.h"
+
+namespace silpose {
+namespace {
+
+// The tube upright or bent, at 8 headings: what common poses are for a human.
+class TubeProposal : public Proposal {
+ public:
+  StateBatch propose(const Observation&, int, Rng&) const override {
+    StateBatch states = StateBatch::Zero(3, 8);
+    states(1, 5) = 0.5;
+    states(2, 5) = -0.5;
+    return states;
+  }
+};
+
+class TrackerTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  TrackerOptions options() const {
+    TrackerOptions options;
+    options.body = body_;
+    options.cameras = {camera_};
+    options.preset = GetParam();
+    options.num_particles = 200;
+    options.proposal = std::make_shared<TubeProposal>();
+    return options;
+  }
+  static std::vector<double> truth(int t) {
+    return {0.01 * t, 0.5, 0, 0, 0, 0.4 * std::sin(0.15 * t), 0, 0.3 * std::cos(0.15 * t)};
+  }
+  Observation observe(int t) const {
+    Observation observation;
+    observation.mask = render_silhouette(*body_, camera_, truth(t));
+    observation.box = observation.mask.bounding_box();
+    return observation;
+  }
+  Observation nothing() const {
+    Observation observation;
+    observation.mask = Mask(camera_.width, camera_.height);
+    observation.trust = {.overall = 0, .nothing_found = true};
+    return observation;
+  }
+  static StepReport step(Tracker& tracker, const Observation& observation, int t) {
+    return tracker.step({&observation, 1}, t, t * int64_t{33'333'333});
+  }
+
+  std::shared_ptr<const BodyModel> body_ = std::make_shared<BodyModel>(make_test_body());
+  PinholeCamera camera_ = look_at_camera(320, 240, 300, {0, 1.2, 4.5}, {0, 0.75, 0});
+};
+
+TEST_P(TrackerTest, FollowsAMovingBody) {
+  Tracker tracker(options());
+  double accuracy = 0;
+  for (int t = 0; t < 20; ++t) {
+    const StepReport report = step(tracker, observe(t), t);
+    EXPECT_EQ(report.state, t == 0 ? StepReport::State::kInitialised : StepReport::State::kTracked);
+    ASSERT_EQ(report.pose.size(), 8u);
+    if (t >= 5) accuracy += report.visual_accuracy / 15;
+    if (t >= 5) EXPECT_NEAR(report.pose[0], truth(t)[0], 0.08);
+  }
+  EXPECT_GT(accuracy, 0.85);
+}
+
+TEST_P(TrackerTest, LimitsAlwaysHold) {
+  Tracker tracker(options());
+  for (int t = 0; t < 3; ++t) step(tracker, observe(t), t);
+  const auto dofs = body_->skeleton.dofs();
+  const StateBatch& particles = tracker.particles();
+  for (Eigen::Index n = 0; n < particles.rows(); ++n) {
+    for (size_t d = 4; d < dofs.size(); ++d) {
+      ASSERT_GE(particles(n, static_cast<Eigen::Index>(d)), dofs[d].lower);
+      ASSERT_LE(particles(n, static_cast<Eigen::Index>(d)), dofs[d].upper);
+    }
+  }
+}
+
+TEST_P(TrackerTest, WaitsUntilSomethingIsSeenThenCoastsWithGrowingSpread) {
+  Tracker tracker(options());
+  EXPECT_EQ(step(tracker, nothing(), 0).state, StepReport::State::kWaiting);
+  EXPECT_TRUE(step(tracker, nothing(), 1).pose.empty());
+  EXPECT_EQ(step(tracker, observe(2), 2).state, StepReport::State::kInitialised);
+  const StepReport seen = step(tracker, observe(3), 3);
+  double last = seen.spread[5];
+  for (int t = 4; t < 10; ++t) {
+    const StepReport coasted = step(tracker, nothing(), t);
+    EXPECT_EQ(coasted.state, StepReport::State::kCoasted);
+    EXPECT_EQ(coasted.visual_accuracy, 0);
+    if (t > 4) EXPECT_GT(coasted.spread[5], last);
+    last = coasted.spread[5];
+  }
+  EXPECT_EQ(step(tracker, observe(10), 10).state, StepReport::State::kTracked);
+  for (int t = 11; t < 45; ++t) step(tracker, nothing(), t);
+  EXPECT_EQ(step(tracker, observe(45), 45).state, StepReport::State::kInitialised);
+}
+
+TEST_P(TrackerTest, TheNumberOfThreadsChangesNothing) {
+  std::vector<double> poses[2];
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    Tracker tracker(options());
+    for (int t = 0; t < 4; ++t) {
+      const StepReport report = step(tracker, observe(t), t);
+      poses[threads - 1].insert(poses[threads - 1].end(), report.pose.begin(), report.pose.end());
+    }
+  }
+  EXPECT_EQ(poses[0], poses[1]);
+}
+
+TEST_P(TrackerTest, AnotherSeedGivesAnotherResult) {
+  std::vector<double> poses[2];
+  for (const int seed : {1, 2}) {
+    auto seeded = options();
+    seeded.seed = static_cast<uint64_t>(seed);
+    Tracker tracker(seeded);
+    step(tracker, observe(0), 0);
+    poses[seed - 1] = step(tracker, observe(1), 1).pose;
+  }
+  EXPECT_NE(poses[0], poses[1]);
+}
+
+INSTANTIATE_TEST_SUITE_P(Presets, TrackerTest, ::testing::Values("default", "thesis"));
+
+TEST(TrackerOptions, AreChecked) {
+  const auto body = std::make_shared<BodyModel>(make_test_body());
+  const auto make = [&](auto change) {
+    TrackerOptions options;
+    options.body = body;
+    options.cameras = {default_camera(64, 48)};
+    change(options);
+    options.check();
+  };
+  EXPECT_NO_THROW(make([](auto&) {}));
+  EXPECT_THROW(make([](auto& o) { o.body = nullptr; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.cameras.clear(); }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.preset = "best"; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_particles = 0; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_layers = 0; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.sigma_deg = -1; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.sharpness = std::nan(""); }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.initial_pose = {1, 2, 3}; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.motion = "teleport"; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.resampling = "best"; }), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace silpose
