@@ -1,0 +1,47 @@
+// ParticleFilter: sequential importance resampling over rows of numbers. It knows no bodies: what moves particles,
+// weighs them and makes lost ones anew are batch callables given to each step.
+// Based on: Salmond & Gordon 2005; thesis section 2.4 (references.bib: salmond2005, cormier2019).
+// Threads: one thread at a time; the callables may be parallel inside. Results depend on the seed alone.
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "silpose/filter/particle_set.h"
+
+namespace silpose {
+
+struct ParticleFilterOptions {
+  double resample_below = 0.5;  // resample when effective sample size / N is below this; 1: every step; 0: never
+  uint64_t seed = 1;
+};
+
+class ParticleFilter {
+ public:
+  // Starts from states [N, D], equally weighted.
+  // Errors: throws std::invalid_argument without states or resampler, or for options out of range.
+  ParticleFilter(StateBatch states, std::shared_ptr<const Resampler> resampler, ParticleFilterOptions options = {});
+
+  // One observation: resample if few particles count, propagate, weigh, normalise.
+  // `regenerate` is needed when the resampler asks for new particles. Errors: throws std::invalid_argument without it.
+  FilterReport step(const Propagate& propagate, const LogLikelihood& log_likelihood, const Regenerate& regenerate = {});
+
+  // No observation: propagates only; weights stay.
+  FilterReport coast(const Propagate& propagate);
+
+  // ParticleSet::inject: candidates [K, D] for the K lowest weighted particles.
+  void inject(const StateBatch& candidates) { particles_.inject(candidates); }
+
+  // Starts over from states [N, D], equally weighted; the step counter goes on.
+  void restart(StateBatch states) { particles_ = ParticleSet::uniform(std::move(states)); }
+
+  [[nodiscard]] const ParticleSet& particles() const { return particles_; }
+
+ private:
+  std::shared_ptr<const Resampler> resampler_;
+  ParticleFilterOptions options_;
+  ParticleSet particles_;
+  uint64_t step_ = 0;
+};
+
+}  // namespace silpose

@@ -1,0 +1,61 @@
+// ParticleSet: states with their log weights, and the moves that every filter makes with them.
+// Threads: a value.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "silpose/filter/log_weights.h"
+#include "silpose/filter/resampling.h"
+#include "silpose/filter/state_batch.h"
+
+namespace silpose {
+
+// Moves every state [N, D] on in time. `stream` is the step coordinate of the random streams to use (base/rng.h).
+using Propagate = std::function<void(StateBatch& states, uint64_t stream)>;
+// Log-likelihood [N] of states [N, D], up to a constant; minus infinity is impossible.
+using LogLikelihood = std::function<void(const StateBatch& states, std::span<double> log_likelihood)>;
+// Makes the given rows anew: at random, or by a proposal.
+using Regenerate = std::function<void(StateBatch& states, std::span<const int> rows, uint64_t stream)>;
+
+struct FilterReport {
+  double effective_sample_size = 0;  // after weighing
+  double log_evidence = 0;           // log of the likelihood averaged over the predicted particles; plain filter only
+  bool resampled = false;            // before propagation
+  int num_regenerated = 0;
+  bool degenerate = false;             // no particle explained the observation: weights are uniform
+  std::vector<double> layer_exponent;  // annealing only: by layer
+};
+
+struct ParticleSet {
+  StateBatch states;                // [N, D]
+  std::vector<double> log_weights;  // [N], normalised
+
+  // Equally weighted. REQUIRES: N >= 1.
+  static ParticleSet uniform(StateBatch states);
+
+  [[nodiscard]] int size() const { return static_cast<int>(states.rows()); }
+  [[nodiscard]] std::vector<double> weights() const { return weights_from_log_weights(log_weights); }
+
+  // N new particles, equally weighted; notes in `report` that it happened.
+  // Errors: throws std::invalid_argument when new particles are asked for and `regenerate` is empty.
+  void resample(const Resampler& resampler, const Regenerate& regenerate, uint64_t seed, uint64_t stream,
+                FilterReport& report);
+
+  // Puts candidates [K, D] in the place of the K lowest weighted particles, each with the average weight 1 / N.
+  // REQUIRES: K <= N, the same D.
+  void inject(const StateBatch& candidates);
+};
+
+// The stream coordinate of a layer of a step. A step has at most kMaxLayers; layer 0 is the step's own.
+inline constexpr int kMaxLayers = 256;
+inline constexpr uint64_t stream_of(uint64_t step, int layer = 0) {
+  return step * kMaxLayers + static_cast<uint64_t>(layer);
+}
+
+// The particle coordinate of the stream that resampling uses, which no particle has.
+inline constexpr uint64_t kResamplingParticle = ~uint64_t{0};
+
+}  // namespace silpose
