@@ -1,0 +1,164 @@
+#include "silpose/segment/background_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "silpose/base/parallel.h"
+#include "silpose/segment/foreground.h"
+
+namespace silpose {
+namespace {
+
+// Grey levels. Compressed video repeats blocks unchanged, so a deviation of 0 over time does not mean no noise.
+constexpr std::array<float, 3> kNoiseFloor = {2.5f, 1.5f, 1.5f};
+constexpr float kMadToDeviation = 1.4826f;
+// Where the subject stands in nearly half of the samples the median deviation is the subject's: the lower third of the
+// deviations bounds it, loosely, as grey levels are coarse for so small a quantile.
+constexpr float kLowerThirdToDeviation = 2.32f, kLowerThirdMargin = 1.0f;
+
+// How many pictures are kept: enough for a median, bounded in memory.
+constexpr int64_t kMaxSamples = 101, kMinSamples = 25;
+constexpr int64_t kSampleBytes = int64_t{256} << 20;
+
+int64_t max_samples(const Video& video) {
+  const int64_t bytes = int64_t{3} * video.width() * video.height();
+  return std::clamp(kSampleBytes / std::max<int64_t>(bytes, 1), kMinSamples, kMaxSamples);
+}
+
+// [H, W, 3] Per pixel and channel, the median over the samples and the median absolute deviation from it.
+void median_and_deviation(const std::vector<ByteImage>& images, ByteImage& median, Image<float>& deviation) {
+  const size_t row_size = images[0].row(0).size(), middle = images.size() / 2, lower = images.size() / 3;
+  parallel_for(static_cast<size_t>(images[0].height()), 8, [&](size_t begin, size_t end) {
+    std::vector<uint8_t> values(images.size());
+    const auto nth_value = [&](size_t n) {
+      std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(n), values.end());
+      return values[n];
+    };
+    for (size_t y = begin; y < end; ++y) {
+      const auto median_row = median.row(static_cast<int>(y));
+      const auto deviation_row = deviation.row(static_cast<int>(y));
+      for (size_t i = 0; i < row_size; ++i) {
+        for (size_t k = 0; k < images.size(); ++k) values[k] = images[k].row(static_cast<int>(y))[i];
+        const uint8_t centre = nth_value(middle);
+        for (uint8_t& value : values) value = static_cast<uint8_t>(std::abs(value - centre));
+        median_row[i] = centre;
+        deviation_row[i] = std::min(kMadToDeviation * static_cast<float>(nth_value(middle)),
+                                    kLowerThirdToDeviation * static_cast<float>(nth_value(lower)) + kLowerThirdMargin);
+      }
+    }
+  });
+}
+
+// Noise is alike in neighbouring pixels, and one pixel's deviation over few samples is not sure: average it with those
+// around it, and keep to the floor.
+void steady_noise(Image<float>& noise) {
+  cv::Mat view(noise.height(), noise.width(), CV_32FC3, noise.pixels().data());
+  cv::Mat around;
+  cv::blur(view, around, cv::Size(3, 3));
+  view = cv::max(view * 0.5 + around * 0.5, cv::Scalar(kNoiseFloor[0], kNoiseFloor[1], kNoiseFloor[2]));
+}
+
+}  // namespace
+
+ByteImage to_luma_chroma(const ByteImage& image) {
+  check(image.channels() == 3, "to_luma_chroma: {} channels", image.channels());
+  ByteImage converted(image.width(), image.height(), 3);
+  cv::Mat to(image.height(), image.width(), CV_8UC3, converted.pixels().data());
+  cv::cvtColor(cv::Mat(image.height(), image.width(), CV_8UC3, const_cast<uint8_t*>(image.pixels().data())), to,
+               cv::COLOR_BGR2YCrCb);
+  return converted;
+}
+
+Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t> end_ns, ProgressSink* progress) {
+  const int64_t limit = max_samples(video);
+  int64_t expected = video.num_frames_hint();
+  if (end_ns) {
+    const auto until_end = static_cast<int64_t>(std::ceil(static_cast<double>(*end_ns) * 1e-9 * video.fps()));
+    expected = expected == 0 ? until_end : std::min(expected, until_end);
+  }
+  int64_t stride = std::max<int64_t>(1, (expected + limit - 1) / limit);
+  BackgroundSamples samples;
+  while (true) {
+    Result<std::optional<Frame>> frame = video.next();
+    if (!frame) return frame.failure();
+    if (!frame->has_value() || (end_ns && (*frame)->time_ns >= *end_ns)) break;
+    const int64_t index = (*frame)->index;
+    if (index % stride == 0) samples.images.push_back(to_luma_chroma((*frame)->images[0]));
+    if (static_cast<int64_t>(samples.images.size()) > limit) {  // longer than was told: keep every other one
+      for (size_t i = 0; 2 * i < samples.images.size(); ++i) samples.images[i] = std::move(samples.images[2 * i]);
+      samples.images.resize((samples.images.size() + 1) / 2);
+      stride *= 2;
+    }
+    if (progress != nullptr && !progress->update("background", index + 1, expected)) {
+      return error("{}: stopped while its background was learned", video.name());
+    }
+  }
+  if (samples.images.empty()) return error("{}: no frame to learn a background from", video.name());
+  return samples;
+}
+
+BackgroundModel learn_background(const BackgroundSamples& samples) {
+  check(!samples.images.empty(), "learn_background: no samples");
+  const int width = samples.images[0].width(), height = samples.images[0].height();
+  BackgroundModel model{.median = ByteImage(width, height, 3), .noise = Image<float>(width, height, 3)};
+  median_and_deviation(samples.images, model.median, model.noise);
+  steady_noise(model.noise);
+  return model;
+}
+
+BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSamples& samples) {
+  BackgroundModel model{.median = to_luma_chroma(plate), .noise = Image<float>(plate.width(), plate.height(), 3)};
+  if (!samples.images.empty()) {
+    check(samples.images[0].width() == plate.width() && samples.images[0].height() == plate.height(),
+          "background_from_plate: plate {}x{}, samples {}x{}", plate.width(), plate.height(), samples.images[0].width(),
+          samples.images[0].height());
+    ByteImage ignored(plate.width(), plate.height(), 3);
+    median_and_deviation(samples.images, ignored, model.noise);
+  }
+  // Where the subject comes and goes the deviation is not noise: not more than a few floors of it is believed. A plate
+  // is its own exposure and may lie a fraction of a pixel off, hence the slope of the picture.
+  cv::Mat noise(plate.height(), plate.width(), CV_32FC3, model.noise.pixels().data());
+  const cv::Mat median(plate.height(), plate.width(), CV_8UC3, model.median.pixels().data());
+  cv::Mat slope_x, slope_y;
+  cv::Sobel(median, slope_x, CV_32F, 1, 0, 3, 1.0 / 8);
+  cv::Sobel(median, slope_y, CV_32F, 0, 1, 3, 1.0 / 8);
+  const cv::Mat slope = 0.25 * (cv::abs(slope_x) + cv::abs(slope_y));
+  noise = cv::min(noise, 3 * cv::Scalar(kNoiseFloor[0], kNoiseFloor[1], kNoiseFloor[2])) + slope;
+  steady_noise(model.noise);
+  return model;
+}
+
+BackgroundDoubt doubt_background(const BackgroundModel& model, const BackgroundSamples& samples,
+                                 const std::optional<Box>& region) {
+  constexpr int kStep = 4;      // every fourth pixel will do
+  constexpr float kSurely = 6;  // deviations
+  const Box box = region.value_or(Box{0, 0, model.width(), model.height()});
+  std::vector<float> gains;
+  for (const ByteImage& image : samples.images) gains.push_back(exposure_gain(model, image));
+  int64_t total = 0, half = 0, ever = 0;
+  for (int y = std::max(box.y, 0); y < std::min(box.y + box.height, model.height()); y += kStep) {
+    for (int x = std::max(box.x, 0); x < std::min(box.x + box.width, model.width()); x += kStep) {
+      size_t covered = 0;
+      for (size_t k = 0; k < samples.images.size(); ++k) {
+        bool differs = false;
+        for (int c = 0; c < 3; ++c) {
+          const float centre = c == 0 ? 0.0f : 128.0f;
+          const float expected = centre + gains[k] * (static_cast<float>(model.median.at(x, y, c)) - centre);
+          differs = differs || std::abs(static_cast<float>(samples.images[k].at(x, y, c)) - expected) >
+                                   kSurely * model.noise.at(x, y, c);
+        }
+        covered += differs ? 1 : 0;
+      }
+      ++total;
+      if (4 * covered >= samples.images.size()) ++half;
+      if (covered > 0) ++ever;
+    }
+  }
+  if (total == 0) return {};
+  return {static_cast<double>(half) / static_cast<double>(total),
+          static_cast<double>(ever) / static_cast<double>(total)};
+}
+
+}  // namespace silpose

@@ -1,0 +1,91 @@
+#include "silpose/segment/background_segmenter.h"
+
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/background_segm.hpp>
+#include <utility>
+
+#include "silpose/segment/foreground.h"
+#include "silpose/segment/trust_monitor.h"
+
+namespace silpose {
+namespace {
+
+class BackgroundSegmenter : public Segmenter {
+ public:
+  BackgroundSegmenter(BackgroundModel model, BackgroundSegmenterOptions options)
+      : options_(std::move(options)), finder_(std::move(model)) {}
+
+  Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
+    if (image.width() != finder_.model().width() || image.height() != finder_.model().height()) {
+      return error("frame {}: {}x{}, its background {}x{}", index, image.width(), image.height(),
+                   finder_.model().width(), finder_.model().height());
+    }
+    return monitor_.judge(choose_blob(finder_.find(to_luma_chroma(image)), options_.clean_up));
+  }
+  [[nodiscard]] int64_t first_index() const override { return options_.first_index; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
+  [[nodiscard]] std::string name() const override { return options_.name; }
+
+ private:
+  BackgroundSegmenterOptions options_;
+  ForegroundFinder finder_;
+  TrustMonitor monitor_;
+};
+
+class OnlineSegmenter : public Segmenter {
+ public:
+  OnlineSegmenter(OnlineMixture mixture, BackgroundSegmenterOptions options) : options_(std::move(options)) {
+    if (mixture == OnlineMixture::kMog2) {
+      subtractor_ = cv::createBackgroundSubtractorMOG2(kHistory, 25, true);
+    } else {
+      subtractor_ = cv::createBackgroundSubtractorKNN(kHistory, 600, true);
+    }
+  }
+
+  Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
+    check(image.channels() == 3, "OnlineSegmenter: {} channels", image.channels());
+    if (num_seen_ > 0 && (image.width() != size_.width || image.height() != size_.height)) {
+      return error("frame {}: {}x{}, those before it {}x{}", index, image.width(), image.height(), size_.width,
+                   size_.height);
+    }
+    size_ = cv::Size(image.width(), image.height());
+    const cv::Mat view(size_, CV_8UC3, const_cast<uint8_t*>(image.pixels().data()));
+    cv::Mat labels;
+    subtractor_->apply(view, labels);
+    labels = labels == 255;  // 127 is shadow
+    cv::medianBlur(labels, labels, 5);
+    ByteImage bytes(image.width(), image.height());
+    labels.copyTo(cv::Mat(size_, CV_8U, bytes.pixels().data()));
+    Segmentation result;
+    if (num_seen_++ < kNumLearned) {
+      result.mask = Mask(image.width(), image.height());
+      result.nothing_found = true;
+      result.trust = 0;
+      return result;
+    }
+    return monitor_.judge(choose_blob(mask_from_image(bytes), options_.clean_up));
+  }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
+  [[nodiscard]] std::string name() const override { return options_.name; }
+
+ private:
+  static constexpr int kHistory = 500;    // pictures until the oldest is forgotten
+  static constexpr int kNumLearned = 10;  // pictures before anything is believed
+  BackgroundSegmenterOptions options_;
+  cv::Ptr<cv::BackgroundSubtractor> subtractor_;
+  cv::Size size_;
+  int num_seen_ = 0;
+  TrustMonitor monitor_;
+};
+
+}  // namespace
+
+std::unique_ptr<Segmenter> make_background_segmenter(BackgroundModel model, BackgroundSegmenterOptions options) {
+  return std::make_unique<BackgroundSegmenter>(std::move(model), std::move(options));
+}
+
+std::unique_ptr<Segmenter> make_online_segmenter(OnlineMixture mixture, BackgroundSegmenterOptions options) {
+  return std::make_unique<OnlineSegmenter>(mixture, std::move(options));
+}
+
+}  // namespace silpose

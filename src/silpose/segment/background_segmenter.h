@@ -1,0 +1,29 @@
+// The segmenters that learn a background: from a model made beforehand, or picture by picture. Made by
+// make_segmenter(). Threads: one thread per segmenter.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "silpose/segment/background_model.h"
+#include "silpose/segment/segmenter.h"
+
+namespace silpose {
+
+struct BackgroundSegmenterOptions {
+  std::string name;                   // see Segmenter::name()
+  int64_t first_index = 0;            // see Segmenter::first_index()
+  std::vector<std::string> warnings;  // known from the start
+  CleanUpOptions clean_up;
+};
+
+std::unique_ptr<Segmenter> make_background_segmenter(BackgroundModel model, BackgroundSegmenterOptions options);
+
+enum class OnlineMixture { kMog2, kKnn };
+
+// Mixtures of Gaussians or nearest neighbours per pixel that learn on; shadows count as background. Knows nothing in
+// its first pictures: trust is 0 there.
+std::unique_ptr<Segmenter> make_online_segmenter(OnlineMixture mixture, BackgroundSegmenterOptions options);
+
+}  // namespace silpose

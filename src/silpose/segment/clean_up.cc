@@ -1,0 +1,143 @@
+#include "silpose/segment/clean_up.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace silpose {
+namespace {
+
+cv::Mat to_mat(const Mask& mask) {
+  cv::Mat mat(mask.height(), mask.width(), CV_8U);
+  for (int y = 0; y < mask.height(); ++y) {
+    uint8_t* row = mat.ptr(y);
+    const auto words = mask.row(y);
+    for (int x = 0; x < mask.width(); ++x) row[x] = (words[static_cast<size_t>(x) >> 6] >> (x & 63)) & 1u ? 255 : 0;
+  }
+  return mat;
+}
+
+Mask from_mat(const cv::Mat& mat) {
+  Mask mask(mat.cols, mat.rows);
+  for (int y = 0; y < mat.rows; ++y) {
+    const uint8_t* row = mat.ptr(y);
+    for (int x = 0; x < mat.cols; ++x) {
+      if (row[x] != 0) mask.set(x, y);
+    }
+  }
+  return mask;
+}
+
+cv::Mat disc(int radius) {
+  cv::Mat element(2 * radius + 1, 2 * radius + 1, CV_8U);
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) {
+      element.at<uint8_t>(y + radius, x + radius) = x * x + y * y <= radius * radius ? 1 : 0;
+    }
+  }
+  return element;
+}
+
+}  // namespace
+
+void CleanUpOptions::check() const {
+  silpose::check(!region || !region->empty(), "region: width and height must be positive");
+  silpose::check(min_blob_px >= 0, "min_blob_px is {}", min_blob_px);
+  silpose::check(join_gap >= 0 && join_gap <= 0.1, "join_gap is {}", join_gap);
+  silpose::check(max_hole >= 0 && max_hole <= 1, "max_hole is {}", max_hole);
+  silpose::check(std::abs(grow_px) <= 200, "grow_px is {}", grow_px);
+}
+
+Mask fill_holes(const Mask& mask, int64_t max_area) {
+  const Box box = mask.bounding_box();
+  if (box.empty() || max_area <= 0) return mask;
+  const cv::Mat mat = to_mat(mask);
+  // Within the bounding box every hole is enclosed; what touches the box's border is outside.
+  const cv::Mat background = mat(cv::Rect(box.x, box.y, box.width, box.height)) == 0;
+  cv::Mat labels, stats, centres;
+  const int count = cv::connectedComponentsWithStats(background, labels, stats, centres, 4, CV_32S);
+  std::vector<bool> is_hole(static_cast<size_t>(count), false);
+  for (int label = 1; label < count; ++label) {
+    const int* s = stats.ptr<int>(label);
+    is_hole[static_cast<size_t>(label)] = s[cv::CC_STAT_AREA] <= max_area && s[cv::CC_STAT_LEFT] > 0 &&
+                                          s[cv::CC_STAT_TOP] > 0 &&
+                                          s[cv::CC_STAT_LEFT] + s[cv::CC_STAT_WIDTH] < box.width &&
+                                          s[cv::CC_STAT_TOP] + s[cv::CC_STAT_HEIGHT] < box.height;
+  }
+  Mask filled = mask;
+  for (int y = 0; y < box.height; ++y) {
+    const int* row = labels.ptr<int>(y);
+    for (int x = 0; x < box.width; ++x) {
+      if (is_hole[static_cast<size_t>(row[x])]) filled.set(box.x + x, box.y + y);
+    }
+  }
+  return filled;
+}
+
+Mask grow(const Mask& mask, int radius_px) {
+  if (radius_px == 0 || mask.bounding_box().empty()) return mask;
+  const cv::Mat element = disc(std::abs(radius_px));
+  cv::Mat mat = to_mat(mask), result;
+  if (radius_px > 0) {
+    cv::dilate(mat, result, element);
+  } else {
+    cv::erode(mat, result, element);  // OpenCV's default border does not erode
+  }
+  return from_mat(result);
+}
+
+Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
+  options.check();
+  Mask cut = foreground;
+  if (options.garbage_mask) {
+    check(options.garbage_mask->width() == cut.width() && options.garbage_mask->height() == cut.height(),
+          "choose_blob: garbage mask {}x{}, picture {}x{}", options.garbage_mask->width(),
+          options.garbage_mask->height(), cut.width(), cut.height());
+    for (int y = 0; y < cut.height(); ++y) {
+      const auto to = cut.row(y);
+      const auto keep = options.garbage_mask->row(y);
+      for (size_t i = 0; i < to.size(); ++i) to[i] &= keep[i];
+    }
+  }
+  const Mask nothing(cut.width(), cut.height());
+  if (cut.bounding_box().empty()) return nothing;
+
+  // Labelled on a copy that is grown by half of the gap; counted in pixels of the mask itself.
+  const cv::Mat mat = to_mat(cut);
+  cv::Mat joined = mat;
+  const int reach = static_cast<int>(std::lround(0.5 * options.join_gap * cut.height()));
+  if (reach > 0) cv::dilate(mat, joined, disc(reach));
+  cv::Mat labels;
+  const auto count = static_cast<size_t>(cv::connectedComponents(joined, labels, 8, CV_32S));
+  std::vector<int64_t> area(count, 0), inside(count, 0);
+  for (int y = 0; y < cut.height(); ++y) {
+    const int* row = labels.ptr<int>(y);
+    for (int x = 0; x < cut.width(); ++x) {
+      if (!mat.at<uint8_t>(y, x)) continue;
+      const auto label = static_cast<size_t>(row[x]);
+      ++area[label];
+      const bool in_region =
+          !options.region || (x >= options.region->x && x < options.region->x + options.region->width &&
+                              y >= options.region->y && y < options.region->y + options.region->height);
+      if (in_region) ++inside[label];
+    }
+  }
+  size_t best = 0;
+  for (size_t label = 1; label < count; ++label) {
+    if (area[label] < options.min_blob_px || 2 * inside[label] < area[label]) continue;
+    if (best == 0 || area[label] > area[best]) best = label;
+  }
+  if (best == 0) return nothing;
+  Mask blob(cut.width(), cut.height());
+  for (int y = 0; y < cut.height(); ++y) {
+    const int* row = labels.ptr<int>(y);
+    for (int x = 0; x < cut.width(); ++x) {
+      if (mat.at<uint8_t>(y, x) && static_cast<size_t>(row[x]) == best) blob.set(x, y);
+    }
+  }
+  const auto max_hole = static_cast<int64_t>(options.max_hole * static_cast<double>(area[best]));
+  return grow(fill_holes(blob, max_hole), options.grow_px);
+}
+
+}  // namespace silpose

@@ -1,0 +1,36 @@
+// choose_blob(): of all that is foreground, the one blob that is the subject.
+// Based on: 8-connected labelling. Blobs apart by no more than a small gap count as one (a belt, a strap, a dark edge
+// cuts a silhouette in two).
+// Threads: any thread.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "silpose/image/mask.h"
+
+namespace silpose {
+
+struct CleanUpOptions {
+  std::optional<Box> region;         // a blob counts only if at least half of its pixels lie inside
+  std::optional<Mask> garbage_mask;  // what is not set is cut away, first
+  int min_blob_px = 0;               // area below which a blob does not count
+  double join_gap = 0.004;           // of the picture's height: gaps that do not part blobs
+  double max_hole = 0.005;           // of the blob's area: holes up to this are filled
+  int grow_px = 0;                   // last: by so many pixels; negative shrinks
+
+  // Errors: throws std::invalid_argument where a value is out of range.
+  void check() const;
+};
+
+// The largest blob that counts, whole; empty where none does. Errors: throws std::invalid_argument where the garbage
+// mask has another size.
+Mask choose_blob(const Mask& foreground, const CleanUpOptions& options);
+
+// Fills holes (4-connected, not touching the border) of at most max_area pixels.
+Mask fill_holes(const Mask& mask, int64_t max_area);
+
+// Grown by a disc of radius_px; shrunk where negative (the picture's border does not shrink it).
+Mask grow(const Mask& mask, int radius_px);
+
+}  // namespace silpose

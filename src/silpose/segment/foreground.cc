@@ -1,0 +1,255 @@
+#include "silpose/segment/foreground.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "silpose/base/parallel.h"
+
+namespace silpose {
+namespace {
+
+constexpr int kBlock = 16;  // pixels
+
+// A pixel is foreground by itself from this chi-square distance on (3 channels). With noise of 3 grey levels that is
+// where the background's Gaussian falls below a foreground of any colour, equally likely.
+constexpr float kThreshold = 22;
+// Evidence of one pixel is bounded, so that neighbours can outvote it.
+constexpr float kMaxAgainst = 4, kMaxFor = 6;
+// Shadows darken to half at most: the deviation of the factor. Light thrown back brightens far less.
+constexpr float kShadowDeviation = 0.115f, kGlowDeviation = 0.04f;
+// Weight of the eight neighbours together, and the step of colour (grey levels) across which they count half.
+constexpr float kNeighbours = 4, kContrast = 12;
+constexpr int kIterations = 4;
+// A shadow lies beside the subject; "shadow" with more than this part of its outline against the subject is the
+// subject.
+constexpr double kEnclosed = 0.6;
+
+float square(float x) { return x * x; }
+
+// tanh(x / 2), near enough.
+float squash(float x) { return x / (1.5f + std::abs(x)); }
+
+}  // namespace
+
+float exposure_gain(const BackgroundModel& model, const ByteImage& luma_chroma) {
+  std::vector<float> ratios;
+  for (int y = 4; y < model.height(); y += 8) {
+    for (int x = 4; x < model.width(); x += 8) {
+      const uint8_t background = model.median.at(x, y), seen = luma_chroma.at(x, y);
+      if (background >= 30 && background <= 235 && seen <= 250) {
+        ratios.push_back(static_cast<float>(seen) / static_cast<float>(background));
+      }
+    }
+  }
+  if (ratios.size() < 32) return 1;
+  const auto middle = ratios.begin() + static_cast<ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return std::clamp(*middle, 0.7f, 1.4f);
+}
+
+ForegroundFinder::ForegroundFinder(BackgroundModel model)
+    : model_(std::move(model)),
+      stride_(static_cast<size_t>(model_.width()) + 2),
+      blocks_x_((model_.width() + kBlock - 1) / kBlock),
+      blocks_y_((model_.height() + kBlock - 1) / kBlock) {
+  const size_t pixels = static_cast<size_t>(model_.width()) * static_cast<size_t>(model_.height());
+  inverse_noise_.resize(3 * pixels);
+  for (size_t i = 0; i < pixels; ++i) {
+    for (size_t c = 0; c < 3; ++c) inverse_noise_[c * pixels + i] = 1 / square(model_.noise.pixels()[3 * i + c]);
+  }
+  differs_.resize(pixels);
+  const size_t size = stride_ * (static_cast<size_t>(model_.height()) + 2);
+  for (auto* field : {&evidence_, &belief_, &next_, &right_, &down_, &down_right_, &down_left_}) field->assign(size, 0);
+}
+
+// Half the chi-square distance above the threshold, bounded.
+void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma) {
+  const float gain = exposure_gain(model_, luma_chroma);
+  const size_t width = static_cast<size_t>(model_.width()), pixels = differs_.size();
+  parallel_for(static_cast<size_t>(model_.height()), kBlock, [&](size_t begin, size_t end) {
+    std::vector<float> planes(6 * width);
+    float *seen_y = planes.data(), *seen_r = seen_y + width, *seen_b = seen_r + width;
+    float *back_y = seen_b + width, *back_r = back_y + width, *back_b = back_r + width;
+    for (size_t y = begin; y < end; ++y) {
+      const uint8_t* pixel = luma_chroma.row(static_cast<int>(y)).data();
+      const uint8_t* background = model_.median.row(static_cast<int>(y)).data();
+      for (size_t x = 0; x < width; ++x) {
+        seen_y[x] = pixel[3 * x];
+        seen_r[x] = static_cast<float>(pixel[3 * x + 1]) - 128;
+        seen_b[x] = static_cast<float>(pixel[3 * x + 2]) - 128;
+        back_y[x] = gain * static_cast<float>(background[3 * x]);
+        back_r[x] = gain * (static_cast<float>(background[3 * x + 1]) - 128);
+        back_b[x] = gain * (static_cast<float>(background[3 * x + 2]) - 128);
+      }
+      const float* weight_y = &inverse_noise_[y * width];
+      const float *weight_r = weight_y + pixels, *weight_b = weight_r + pixels;
+      float* evidence = &evidence_[(y + 1) * stride_ + 1];
+      float* belief = &belief_[(y + 1) * stride_ + 1];
+      uint8_t* differs = &differs_[y * width];
+      for (size_t x = 0; x < width; ++x) {
+        const float plain = square(seen_y[x] - back_y[x]) * weight_y[x] + square(seen_r[x] - back_r[x]) * weight_r[x] +
+                            square(seen_b[x] - back_b[x]) * weight_b[x];
+        const float factor = std::min(seen_y[x] / std::max(back_y[x], 1.0f), 1.5f);
+        const float deviation = factor < 1 ? 1 / kShadowDeviation : 1 / kGlowDeviation;
+        const float shadow = square((factor - 1) * deviation) + square(seen_r[x] - factor * back_r[x]) * weight_r[x] +
+                             square(seen_b[x] - factor * back_b[x]) * weight_b[x];
+        const float half = 0.5f * (std::min(plain, shadow) - kThreshold);
+        evidence[x] = std::min(std::max(half, -kMaxAgainst), kMaxFor);
+        belief[x] = squash(evidence[x]);
+        differs[x] = plain > kThreshold;
+      }
+    }
+  });
+}
+
+// Blocks with a pixel that may be foreground, and those around them: elsewhere nothing can change.
+void ForegroundFinder::choose_blocks() {
+  const size_t count = static_cast<size_t>(blocks_x_) * static_cast<size_t>(blocks_y_);
+  std::vector<uint8_t> active(count, 0);
+  parallel_for(static_cast<size_t>(blocks_y_), 1, [&](size_t begin, size_t end) {
+    for (size_t block_y = begin; block_y < end; ++block_y) {
+      const int last = std::min((static_cast<int>(block_y) + 1) * kBlock, model_.height());
+      for (int y = static_cast<int>(block_y) * kBlock; y < last; ++y) {
+        const float* evidence = &evidence_[(static_cast<size_t>(y) + 1) * stride_ + 1];
+        for (int x = 0; x < model_.width(); ++x) {
+          if (evidence[x] > 0) active[block_y * static_cast<size_t>(blocks_x_) + static_cast<size_t>(x / kBlock)] = 1;
+        }
+      }
+    }
+  });
+  chosen_.assign(count, 0);
+  for (int y = 0; y < blocks_y_; ++y) {
+    for (int x = 0; x < blocks_x_; ++x) {
+      if (!active[static_cast<size_t>(y * blocks_x_ + x)]) continue;
+      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, blocks_y_ - 1); ++v) {
+        for (int u = std::max(x - 1, 0); u <= std::min(x + 1, blocks_x_ - 1); ++u) {
+          chosen_[static_cast<size_t>(v * blocks_x_ + u)] = 1;
+        }
+      }
+    }
+  }
+}
+
+template <class Body>
+void ForegroundFinder::for_each_run(const Body& body) const {
+  parallel_for(static_cast<size_t>(blocks_y_), 1, [&](size_t begin, size_t end) {
+    for (int block_y = static_cast<int>(begin); block_y < static_cast<int>(end); ++block_y) {
+      const uint8_t* chosen = &chosen_[static_cast<size_t>(block_y * blocks_x_)];
+      for (int from = 0; from < blocks_x_;) {
+        if (!chosen[from]) {
+          ++from;
+          continue;
+        }
+        int to = from;
+        while (to < blocks_x_ && chosen[to]) ++to;
+        const int x0 = from * kBlock, x1 = std::min(to * kBlock, model_.width());
+        for (int y = block_y * kBlock; y < std::min((block_y + 1) * kBlock, model_.height()); ++y) body(x0, x1, y);
+        from = to;
+      }
+    }
+  });
+}
+
+// How much a pixel and its neighbour belong together.
+void ForegroundFinder::tie_neighbours(const ByteImage& luma_chroma) {
+  for_each_run([&](int x0, int x1, int y) {
+    constexpr float kStraight = kNeighbours / 6.83f, kSlanted = 0.7071f * kStraight;  // 4 + 4 * 0.7071
+    const bool is_last = y + 1 == model_.height();
+    const uint8_t* here = luma_chroma.row(y).data();
+    const uint8_t* below = luma_chroma.row(is_last ? y : y + 1).data();
+    const auto tie = [](const uint8_t* a, const uint8_t* b, float weight) {
+      const int s0 = a[0] - b[0], s1 = a[1] - b[1], s2 = a[2] - b[2];
+      return weight / (1 + static_cast<float>(s0 * s0 + s1 * s1 + s2 * s2) * (1 / square(kContrast)));
+    };
+    for (int x = x0; x < x1; ++x) {
+      const size_t i = (static_cast<size_t>(y) + 1) * stride_ + 1 + static_cast<size_t>(x);
+      const ptrdiff_t p = ptrdiff_t{3} * x;
+      if (x + 1 < model_.width()) right_[i] = tie(here + p, here + p + 3, kStraight);
+      if (is_last) continue;
+      down_[i] = tie(here + p, below + p, kStraight);
+      if (x + 1 < model_.width()) down_right_[i] = tie(here + p, below + p + 3, kSlanted);
+      if (x > 0) down_left_[i] = tie(here + p, below + p - 3, kSlanted);
+    }
+  });
+}
+
+void ForegroundFinder::smooth_beliefs() {
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    for_each_run([&](int x0, int x1, int y) {
+      const size_t row = (static_cast<size_t>(y) + 1) * stride_ + 1;
+      const float *b = belief_.data(), *r = right_.data(), *d = down_.data(), *dr = down_right_.data(),
+                  *dl = down_left_.data(), *e = evidence_.data();
+      float* to = next_.data();
+      for (size_t i = row + static_cast<size_t>(x0); i < row + static_cast<size_t>(x1); ++i) {
+        const size_t up = i - stride_, low = i + stride_;
+        to[i] = squash(e[i] + r[i] * b[i + 1] + r[i - 1] * b[i - 1] + d[i] * b[low] + d[up] * b[up] +
+                       dr[i] * b[low + 1] + dr[up - 1] * b[up - 1] + dl[i] * b[low - 1] + dl[up + 1] * b[up + 1]);
+      }
+    });
+    for_each_run([&](int x0, int x1, int y) {
+      const auto at = static_cast<ptrdiff_t>((static_cast<size_t>(y) + 1) * stride_ + 1);
+      std::copy(next_.begin() + at + x0, next_.begin() + at + x1, belief_.begin() + at + x0);
+    });
+  }
+}
+
+void ForegroundFinder::keep_enclosed_shadows(Mask& mask) const {
+  const int width = model_.width(), height = model_.height();
+  cv::Mat shadow(height, width, CV_8U, cv::Scalar(0));
+  for_each_run([&](int x0, int x1, int y) {
+    const uint8_t* differs = &differs_[static_cast<size_t>(y) * static_cast<size_t>(width)];
+    for (int x = x0; x < x1; ++x) shadow.at<uint8_t>(y, x) = differs[x] && !mask.get(x, y) ? 1 : 0;
+  });
+  cv::Mat labels;
+  const int count = cv::connectedComponents(shadow, labels, 4, CV_32S);
+  if (count == 1) return;
+  std::vector<int64_t> against_subject(static_cast<size_t>(count), 0), outline(static_cast<size_t>(count), 0);
+  for (int y = 0; y < height; ++y) {
+    const int* row = labels.ptr<int>(y);
+    for (int x = 0; x < width; ++x) {
+      if (row[x] == 0) continue;
+      const auto label = static_cast<size_t>(row[x]);
+      constexpr int kSteps[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
+      for (const auto& step : kSteps) {
+        const int u = x + step[0], v = y + step[1];
+        const bool inside = u >= 0 && u < width && v >= 0 && v < height;
+        if (inside && labels.at<int>(v, u) == row[x]) continue;
+        ++outline[label];
+        if (inside && mask.get(u, v)) ++against_subject[label];
+      }
+    }
+  }
+  for (int y = 0; y < height; ++y) {
+    const int* row = labels.ptr<int>(y);
+    for (int x = 0; x < width; ++x) {
+      const auto label = static_cast<size_t>(row[x]);
+      if (label != 0 && static_cast<double>(against_subject[label]) > kEnclosed * static_cast<double>(outline[label])) {
+        mask.set(x, y);
+      }
+    }
+  }
+}
+
+Mask ForegroundFinder::find(const ByteImage& luma_chroma) {
+  check(luma_chroma.width() == model_.width() && luma_chroma.height() == model_.height() && luma_chroma.channels() == 3,
+        "ForegroundFinder: picture {}x{}x{}, background {}x{}", luma_chroma.width(), luma_chroma.height(),
+        luma_chroma.channels(), model_.width(), model_.height());
+  weigh_evidence(luma_chroma);
+  choose_blocks();
+  tie_neighbours(luma_chroma);
+  smooth_beliefs();
+  Mask mask(model_.width(), model_.height());
+  for_each_run([&](int x0, int x1, int y) {
+    const float* belief = &belief_[(static_cast<size_t>(y) + 1) * stride_ + 1];
+    const auto words = mask.row(y);
+    for (int x = x0; x < x1; ++x) {
+      words[static_cast<size_t>(x) >> 6] |= static_cast<uint64_t>(belief[x] > 0) << (x & 63);
+    }
+  });
+  keep_enclosed_shadows(mask);
+  return mask;
+}
+
+}  // namespace silpose

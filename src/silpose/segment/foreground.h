@@ -1,0 +1,47 @@
+// ForegroundFinder: the pixels that the background does not explain, neither as it is nor darkened by a shadow.
+// Based on: a chi-square distance with a shadow alternative of scaled luma and chroma (references.bib: horprasert1999),
+// made whole by mean-field steps over contrast-sensitive ties between neighbours (references.bib: boykov2001).
+// Threads: one thread per finder (it keeps scratch); works on all cores itself.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "silpose/image/image.h"
+#include "silpose/image/mask.h"
+#include "silpose/segment/background_model.h"
+
+namespace silpose {
+
+class ForegroundFinder {
+ public:
+  explicit ForegroundFinder(BackgroundModel model);
+
+  // [H, W] of a picture [H, W, 3] in Y, Cr, Cb. REQUIRES: the model's size.
+  Mask find(const ByteImage& luma_chroma);
+
+  [[nodiscard]] const BackgroundModel& model() const { return model_; }
+
+ private:
+  void weigh_evidence(const ByteImage& luma_chroma);
+  void choose_blocks();
+  void tie_neighbours(const ByteImage& luma_chroma);
+  void smooth_beliefs();
+  void keep_enclosed_shadows(Mask& mask) const;
+  template <class Body>
+  void for_each_run(const Body& body) const;  // body(x begin, x end, y) over the chosen blocks
+
+  BackgroundModel model_;
+  size_t stride_ = 0;  // of the fields below: one pixel more than the picture on every side
+  int blocks_x_ = 0, blocks_y_ = 0;
+  std::vector<float> inverse_noise_;                          // [3, H, W] 1 / variance
+  std::vector<uint8_t> differs_;                              // would be foreground if there were no shadows
+  std::vector<uint8_t> chosen_;                               // [blocks_y, blocks_x] where anything may be foreground
+  std::vector<float> evidence_, belief_, next_;               // positive speaks for foreground
+  std::vector<float> right_, down_, down_right_, down_left_;  // ties to the neighbour there
+};
+
+// How much brighter the whole picture is than the background: the median ratio of luma. 1 is no change.
+float exposure_gain(const BackgroundModel& model, const ByteImage& luma_chroma);
+
+}  // namespace silpose

@@ -1,0 +1,67 @@
+#include "silpose/segment/given_masks.h"
+
+#include <utility>
+
+#include "silpose/segment/trust_monitor.h"
+
+namespace silpose {
+namespace {
+
+Mask white_of(const ByteImage& image) {
+  ByteImage grey(image.width(), image.height());
+  for (int y = 0; y < image.height(); ++y) {
+    for (int x = 0; x < image.width(); ++x) {
+      const int sum = image.at(x, y, 0) + 2 * image.at(x, y, 1) + image.at(x, y, 2);
+      grey.at(x, y) = static_cast<uint8_t>(sum / 4);
+    }
+  }
+  return mask_from_image(grey);
+}
+
+class GivenMasks : public Segmenter {
+ public:
+  GivenMasks(std::optional<Video> masks, const CleanUpOptions& clean_up)
+      : masks_(std::move(masks)), clean_up_(clean_up) {
+    is_cleaned_ = clean_up.region || clean_up.garbage_mask || clean_up.grow_px != 0 || clean_up.min_blob_px > 0;
+    clean_up_.max_hole = 0;  // whoever made the masks meant their holes
+  }
+
+  Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
+    check(image.channels() == 3, "GivenMasks: {} channels", image.channels());
+    if (!masks_) return judge(white_of(image));
+    while (true) {
+      Result<std::optional<Frame>> frame = masks_->next();
+      if (!frame) return frame.failure();
+      if (!frame->has_value()) {
+        return error("{}: {} masks, frame {} has none", masks_->name(), num_read_, index);
+      }
+      num_read_ = (*frame)->index + 1;
+      check((*frame)->index <= index, "GivenMasks: frame {} after frame {}", index, (*frame)->index);
+      if ((*frame)->index < index) continue;
+      const ByteImage& mask = (*frame)->images[0];
+      if (mask.width() != image.width() || mask.height() != image.height()) {
+        return error("{}: mask {} is {}x{}, its picture {}x{}", masks_->name(), index, mask.width(), mask.height(),
+                     image.width(), image.height());
+      }
+      return judge(white_of(mask));
+    }
+  }
+  [[nodiscard]] std::string name() const override { return "masks"; }
+
+ private:
+  Segmentation judge(const Mask& mask) { return monitor_.judge(is_cleaned_ ? choose_blob(mask, clean_up_) : mask); }
+
+  std::optional<Video> masks_;
+  CleanUpOptions clean_up_;
+  bool is_cleaned_ = false;
+  int64_t num_read_ = 0;
+  TrustMonitor monitor_;
+};
+
+}  // namespace
+
+std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, const CleanUpOptions& clean_up) {
+  return std::make_unique<GivenMasks>(std::move(masks), clean_up);
+}
+
+}  // namespace silpose

@@ -1,0 +1,158 @@
+#include "silpose/segment/segmenter.h"
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+
+#include "silpose/image/video.h"
+#include "silpose/segment/background_model.h"
+#include "silpose/segment/background_segmenter.h"
+#include "silpose/segment/given_masks.h"
+
+namespace silpose {
+namespace {
+
+// Fractions of the picture (or the region) from which a warning is due.
+constexpr double kMuchHalfCovered = 0.002, kLittleMoves = 0.002;
+
+std::vector<std::string> doubts(const std::string& input, const BackgroundModel& model,
+                                const BackgroundSamples& samples, const CleanUpOptions& clean_up) {
+  const BackgroundDoubt doubt = doubt_background(model, samples, clean_up.region);
+  if (doubt.ever_covered < kLittleMoves) {
+    return {
+        fmt::format("{}: next to nothing moves in this clip; a subject who stays put is taken for background "
+                    "(--background with a plate or lead-in:SECONDS helps)",
+                    input)};
+  }
+  if (doubt.half_covered > kMuchHalfCovered) {
+    return {
+        fmt::format("{}: in {:.1f} % of the picture something stays for a good part of the clip; a subject who stays "
+                    "put may have been taken for background (--background with a plate or lead-in:SECONDS helps)",
+                    input, 100 * doubt.half_covered)};
+  }
+  return {};
+}
+
+Result<void> check_sizes(const std::string& input, const Video& video, const CleanUpOptions& clean_up) {
+  const int width = video.width(), height = video.height();
+  if (clean_up.garbage_mask && (clean_up.garbage_mask->width() != width || clean_up.garbage_mask->height() != height)) {
+    return error("{}: pictures of {}x{}, the garbage mask is {}x{}", input, width, height,
+                 clean_up.garbage_mask->width(), clean_up.garbage_mask->height());
+  }
+  if (const auto& region = clean_up.region) {
+    if (region->x >= width || region->y >= height || region->x + region->width <= 0 ||
+        region->y + region->height <= 0) {
+      return error("{}: the region {},{},{},{} lies outside its pictures of {}x{}", input, region->x, region->y,
+                   region->width, region->height, width, height);
+    }
+  }
+  return {};
+}
+
+Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const SegmenterOptions& options) {
+  Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  if (!video) return video.failure();
+  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
+  if (options.masks.empty()) return make_given_masks({}, options.clean_up);
+  Result<Video> masks = open_video(options.masks, {.default_fps = options.default_fps});
+  if (!masks) return masks.failure();
+  if (masks->width() != video->width() || masks->height() != video->height()) {
+    return error("{}: masks of {}x{} for pictures of {}x{}", options.masks, masks->width(), masks->height(),
+                 video->width(), video->height());
+  }
+  // A container's own count may be off by one.
+  const int64_t num_masks = masks->num_frames_hint(), num_frames = video->num_frames_hint();
+  if (num_masks > 0 && num_masks + 1 < num_frames) {
+    return error("{}: {} masks for {} frames of {}", options.masks, num_masks, num_frames, input);
+  }
+  return make_given_masks(std::move(*masks), options.clean_up);
+}
+
+// A picture, or a clip of the empty scene.
+Result<BackgroundModel> model_from_plate(const std::string& plate, const std::string& input, Video& video,
+                                         ProgressSink* progress) {
+  Result<Video> plates = open_video(plate);
+  if (!plates) return plates.failure();
+  if (plates->width() != video.width() || plates->height() != video.height()) {
+    return error("{}: a background of {}x{} for pictures of {}x{} in {}", plate, plates->width(), plates->height(),
+                 video.width(), video.height(), input);
+  }
+  Result<std::optional<Frame>> first = plates->next();
+  if (!first) return first.failure();
+  Result<std::optional<Frame>> second = plates->next();
+  if (!second) return second.failure();
+  if (second->has_value()) {
+    if (const auto rewound = plates->rewind(); !rewound) return rewound.failure();
+    Result<BackgroundSamples> samples = sample_background(*plates, {}, progress);
+    if (!samples) return samples.failure();
+    return learn_background(*samples);
+  }
+  BackgroundSamples samples;
+  if (!video.is_live()) {
+    Result<BackgroundSamples> of_clip = sample_background(video, {}, progress);
+    if (!of_clip) return of_clip.failure();
+    samples = std::move(*of_clip);
+  }
+  return background_from_plate((*first)->images[0], samples);
+}
+
+Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, const SegmenterOptions& options,
+                                                   ProgressSink* progress) {
+  Result<Video> opened = open_video(input, {.default_fps = options.default_fps});
+  if (!opened) return opened.failure();
+  Video& video = *opened;
+  if (const auto fits = check_sizes(input, video, options.clean_up); !fits) return fits.failure();
+  const std::string& background = options.background;
+  BackgroundSegmenterOptions made{
+      .name = "background " + background, .first_index = 0, .warnings = {}, .clean_up = options.clean_up};
+
+  if (background == "online" || background == "online:knn" || (background == "auto" && video.is_live())) {
+    const bool knn = background == "online:knn";
+    if (!knn) made.name = "background online";
+    return make_online_segmenter(knn ? OnlineMixture::kKnn : OnlineMixture::kMog2, std::move(made));
+  }
+  if (background == "auto") {
+    Result<BackgroundSamples> samples = sample_background(video, {}, progress);
+    if (!samples) return samples.failure();
+    BackgroundModel model = learn_background(*samples);
+    made.warnings = doubts(input, model, *samples, options.clean_up);
+    return make_background_segmenter(std::move(model), std::move(made));
+  }
+  static constexpr std::string_view kLeadIn = "lead-in:";
+  if (background.starts_with(kLeadIn)) {
+    const char* end = background.data() + background.size();
+    double seconds = 0;
+    const auto [stop, failure] = std::from_chars(background.data() + kLeadIn.size(), end, seconds);
+    if (failure != std::errc() || stop != end || !(seconds > 0) || seconds > 1e6) {
+      return error("background '{}': lead-in wants a positive number of seconds", background);
+    }
+    if (video.is_live()) return error("{}: the background of a live camera is learned online", input);
+    Result<BackgroundSamples> samples = sample_background(video, std::llround(seconds * 1e9), progress);
+    if (!samples) return samples.failure();
+    made.first_index = static_cast<int64_t>(std::ceil(seconds * video.fps() - 1e-6));
+    if (Result<std::optional<Frame>> after = video.next(); !after) {
+      return after.failure();
+    } else if (!after->has_value()) {
+      return error("{}: ends within its lead-in of {} s", input, seconds);
+    }
+    return make_background_segmenter(learn_background(*samples), std::move(made));
+  }
+  Result<BackgroundModel> model = model_from_plate(background, input, video, progress);
+  if (!model) return model.failure();
+  return make_background_segmenter(std::move(*model), std::move(made));
+}
+
+}  // namespace
+
+Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, const SegmenterOptions& options,
+                                                  ProgressSink* progress) {
+  options.clean_up.check();
+  const bool masks = options.kind == "masks" || (options.kind == "auto" && !options.masks.empty());
+  if (masks) return make_masks(input, options);
+  if (options.kind != "auto" && options.kind != "background") {
+    return error("segmenter '{}': unknown; known are auto, background, masks", options.kind);
+  }
+  return make_background(input, options, progress);
+}
+
+}  // namespace silpose

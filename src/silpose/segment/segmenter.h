@@ -1,0 +1,60 @@
+// Segmenter: picture to mask of the subject, by a background model, or by masks that are given; and how far the mask
+// can be trusted. Based on: background_model.h, OpenCV's mixtures (references.bib: zivkovic2004, zivkovic2006),
+// clean_up.h. Threads: one thread per segmenter; works on all cores itself.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "silpose/base/progress.h"
+#include "silpose/base/result.h"
+#include "silpose/image/image.h"
+#include "silpose/image/mask.h"
+#include "silpose/segment/clean_up.h"
+
+namespace silpose {
+
+struct Segmentation {
+  Mask mask;                    // [H, W] the chosen blob
+  double trust = 1;             // 0: nothing to go by; 1: as good as a given mask
+  bool nothing_found = false;   // no blob counts
+  bool touches_border = false;  // part of the subject may be outside the picture
+  bool area_jumped = false;     // the area is far from the recent median
+};
+
+class Segmenter {
+ public:
+  virtual ~Segmenter() = default;
+
+  // The mask of picture number `index` of the video, [H, W, 3] B, G, R. Indices rise from call to call and may skip.
+  // Errors: the picture has another size than those learned from; given masks that end, break or have another size.
+  virtual Result<Segmentation> segment(const ByteImage& image, int64_t index) = 0;
+
+  // Pictures before this one serve to learn from and are not to be tracked.
+  [[nodiscard]] virtual int64_t first_index() const { return 0; }
+
+  // What the user should know about this input, one line each; may grow while it runs.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+
+  // "background auto", "background online", "masks", ...: for the result's settings.
+  [[nodiscard]] virtual std::string name() const = 0;
+};
+
+struct SegmenterOptions {
+  std::string kind = "auto";        // auto, background, masks
+  std::string background = "auto";  // auto, online, online:knn, lead-in:SECONDS, a video, a picture
+  std::string masks;                // a directory, a pattern, a video; empty with kind masks: the input itself
+  double default_fps = 30;          // of input that carries no rate
+  CleanUpOptions clean_up;  // given masks stay as they are unless a region, a garbage mask or growth is asked for
+};
+
+// For one camera's input as open_video() takes it. Reads the input, or its lead-in, once where a background is learned
+// from it. `auto` is masks where masks are given and background otherwise; a live input's background is learned online.
+// Errors: unknown kind or background; the input, the plate or the masks cannot be read, or have another size than the
+// input; fewer masks than frames where both are known; no frame in the lead-in; stopped by the progress sink.
+Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, const SegmenterOptions& options = {},
+                                                  ProgressSink* progress = nullptr);
+
+}  // namespace silpose

@@ -1,0 +1,45 @@
+#include "silpose/segment/trust_monitor.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace silpose {
+namespace {
+
+// Half a second or so: a walker's area changes by a fifth in that time. A new level is accepted once it is the median.
+constexpr size_t kWindow = 15, kLeast = 5;
+constexpr double kMaxGrowth = 1.5;
+constexpr double kTrustAtBorder = 0.5, kTrustAfterJump = 0.25;
+
+int64_t median(std::vector<int64_t> values) {
+  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
+
+Segmentation TrustMonitor::judge(Mask mask) {
+  Segmentation result;
+  const int64_t area = mask.count();
+  const Box box = mask.bounding_box();
+  result.nothing_found = area == 0;
+  result.touches_border = area > 0 && (box.x == 0 || box.y == 0 || box.x + box.width == mask.width() ||
+                                       box.y + box.height == mask.height());
+  if (area > 0) {
+    if (recent_areas_.size() >= kLeast) {
+      const auto usual = static_cast<double>(median({recent_areas_.begin(), recent_areas_.end()}));
+      const double ratio = static_cast<double>(area) / usual;
+      result.area_jumped = ratio > kMaxGrowth || ratio < 1 / kMaxGrowth;
+    }
+    recent_areas_.push_back(area);
+    if (recent_areas_.size() > kWindow) recent_areas_.pop_front();
+  }
+  result.trust = result.nothing_found ? 0 : 1;
+  if (result.touches_border) result.trust *= kTrustAtBorder;
+  if (result.area_jumped) result.trust *= kTrustAfterJump;
+  result.mask = std::move(mask);
+  return result;
+}
+
+}  // namespace silpose
