@@ -19,7 +19,7 @@ constexpr float kMadToDeviation = 1.4826f;
 constexpr float kLowerThirdToDeviation = 2.32f, kLowerThirdMargin = 1.0f;
 
 // How many pictures are kept: enough for a median, bounded in memory.
-constexpr int64_t kMaxSamples = 101, kMinSamples = 25;
+constexpr int64_t kMaxSamples = 75, kMinSamples = 25;
 constexpr int64_t kSampleBytes = int64_t{256} << 20;
 
 int64_t max_samples(const Video& video) {
@@ -27,25 +27,64 @@ int64_t max_samples(const Video& video) {
   return std::clamp(kSampleBytes / std::max<int64_t>(bytes, 1), kMinSamples, kMaxSamples);
 }
 
+// What a few byte values look like: counted, which for values as close together as these beats sorting.
+class ByteCounts {
+ public:
+  void add(uint8_t value) {
+    ++fine_[value];
+    ++coarse_[value >> 4];
+    ++total_;
+  }
+  void clear() { *this = ByteCounts(); }
+
+  [[nodiscard]] int median() const {
+    const int wanted = total_ / 2 + 1;
+    int seen = 0, value = 0;
+    while (seen + coarse_[static_cast<size_t>(value >> 4)] < wanted) {
+      seen += coarse_[static_cast<size_t>(value >> 4)];
+      value += 16;
+    }
+    while ((seen += fine_[static_cast<size_t>(value)]) < wanted) ++value;
+    return value;
+  }
+
+  // The deviation from `centre` that more than total / divisor values keep to.
+  [[nodiscard]] int deviation(int centre, int divisor) const {
+    const int wanted = total_ / divisor + 1;
+    int seen = fine_[static_cast<size_t>(centre)], reach = 0;
+    while (seen < wanted) {
+      ++reach;
+      if (centre >= reach) seen += fine_[static_cast<size_t>(centre - reach)];
+      if (centre + reach < 256) seen += fine_[static_cast<size_t>(centre + reach)];
+    }
+    return reach;
+  }
+
+ private:
+  std::array<uint8_t, 256> fine_{};
+  std::array<uint8_t, 16> coarse_{};
+  int total_ = 0;
+};
+static_assert(kMaxSamples < 256);
+
 // [H, W, 3] Per pixel and channel, the median over the samples and the median absolute deviation from it.
-void median_and_deviation(const std::vector<ByteImage>& images, ByteImage& median, Image<float>& deviation) {
-  const size_t row_size = images[0].row(0).size(), middle = images.size() / 2, lower = images.size() / 3;
+void median_and_deviation(const std::vector<ByteImage>& images, ByteImage& median, Image<float>& noise) {
+  const size_t row_size = images[0].row(0).size();
   parallel_for(static_cast<size_t>(images[0].height()), 8, [&](size_t begin, size_t end) {
-    std::vector<uint8_t> values(images.size());
-    const auto nth_value = [&](size_t n) {
-      std::nth_element(values.begin(), values.begin() + static_cast<ptrdiff_t>(n), values.end());
-      return values[n];
-    };
-    for (size_t y = begin; y < end; ++y) {
-      const auto median_row = median.row(static_cast<int>(y));
-      const auto deviation_row = deviation.row(static_cast<int>(y));
+    ByteCounts counts;
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      std::vector<const uint8_t*> rows;
+      for (const ByteImage& image : images) rows.push_back(image.row(y).data());
+      const auto median_row = median.row(y);
+      const auto noise_row = noise.row(y);
       for (size_t i = 0; i < row_size; ++i) {
-        for (size_t k = 0; k < images.size(); ++k) values[k] = images[k].row(static_cast<int>(y))[i];
-        const uint8_t centre = nth_value(middle);
-        for (uint8_t& value : values) value = static_cast<uint8_t>(std::abs(value - centre));
-        median_row[i] = centre;
-        deviation_row[i] = std::min(kMadToDeviation * static_cast<float>(nth_value(middle)),
-                                    kLowerThirdToDeviation * static_cast<float>(nth_value(lower)) + kLowerThirdMargin);
+        counts.clear();
+        for (const uint8_t* row : rows) counts.add(row[i]);
+        const int centre = counts.median();
+        median_row[i] = static_cast<uint8_t>(centre);
+        noise_row[i] =
+            std::min(kMadToDeviation * static_cast<float>(counts.deviation(centre, 2)),
+                     kLowerThirdToDeviation * static_cast<float>(counts.deviation(centre, 3)) + kLowerThirdMargin);
       }
     }
   });

@@ -19,6 +19,10 @@ constexpr float kThreshold = 22;
 constexpr float kMaxAgainst = 4, kMaxFor = 6;
 // Shadows darken to half at most: the deviation of the factor. Light thrown back brightens far less.
 constexpr float kShadowDeviation = 0.115f, kGlowDeviation = 0.04f;
+// A shadow keeps the background's texture: windows in which the luma is compared, and the weight of what is left over,
+// in noise variances.
+constexpr int kReach = 3;
+constexpr float kTextureWeight = 3;
 // Weight of the eight neighbours together, and the step of colour (grey levels) across which they count half.
 constexpr float kNeighbours = 4, kContrast = 12;
 constexpr int kIterations = 4;
@@ -60,8 +64,44 @@ ForegroundFinder::ForegroundFinder(BackgroundModel model)
     for (size_t c = 0; c < 3; ++c) inverse_noise_[c * pixels + i] = 1 / square(model_.noise.pixels()[3 * i + c]);
   }
   differs_.resize(pixels);
+  texture_.resize(pixels);
   const size_t size = stride_ * (static_cast<size_t>(model_.height()) + 2);
   for (auto* field : {&evidence_, &belief_, &next_, &right_, &down_, &down_right_, &down_left_}) field->assign(size, 0);
+}
+
+void ForegroundFinder::compare_texture(const ByteImage& luma_chroma) {
+  const int width = model_.width(), height = model_.height();
+  parallel_for(static_cast<size_t>(height), kBlock, [&](size_t begin, size_t end) {
+    // Sums over the columns of the window, with kReach empty ones on either side.
+    const size_t padded = static_cast<size_t>(width) + 2 * kReach;
+    std::vector<int> seen_seen(padded), seen_back(padded), back_back(padded);
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (auto* sums : {&seen_seen, &seen_back, &back_back}) std::fill(sums->begin(), sums->end(), 0);
+      const int first = std::max(y - kReach, 0), last = std::min(y + kReach, height - 1);
+      for (int v = first; v <= last; ++v) {
+        const uint8_t *seen = luma_chroma.row(v).data(), *back = model_.median.row(v).data();
+        for (int x = 0; x < width; ++x) {
+          const int s = seen[3 * x], b = back[3 * x];
+          const auto i = static_cast<size_t>(x + kReach);
+          seen_seen[i] += s * s;
+          seen_back[i] += s * b;
+          back_back[i] += b * b;
+        }
+      }
+      float* texture = &texture_[static_cast<size_t>(y) * static_cast<size_t>(width)];
+      for (int x = 0; x < width; ++x) {
+        int ss = 0, sb = 0, bb = 0;
+        for (size_t i = static_cast<size_t>(x); i <= static_cast<size_t>(x) + 2 * kReach; ++i) {
+          ss += seen_seen[i];
+          sb += seen_back[i];
+          bb += back_back[i];
+        }
+        const int columns = std::min(x + kReach, width - 1) - std::max(x - kReach, 0) + 1;
+        const double left = ss - static_cast<double>(sb) * sb / std::max(bb, 1);
+        texture[x] = static_cast<float>(left) / static_cast<float>(columns * (last - first + 1));
+      }
+    }
+  });
 }
 
 // Half the chi-square distance above the threshold, bounded.
@@ -69,9 +109,9 @@ void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma) {
   const float gain = exposure_gain(model_, luma_chroma);
   const size_t width = static_cast<size_t>(model_.width()), pixels = differs_.size();
   parallel_for(static_cast<size_t>(model_.height()), kBlock, [&](size_t begin, size_t end) {
-    std::vector<float> planes(6 * width);
+    std::vector<float> planes(7 * width);
     float *seen_y = planes.data(), *seen_r = seen_y + width, *seen_b = seen_r + width;
-    float *back_y = seen_b + width, *back_r = back_y + width, *back_b = back_r + width;
+    float *back_y = seen_b + width, *back_r = back_y + width, *back_b = back_r + width, *least = back_b + width;
     for (size_t y = begin; y < end; ++y) {
       const uint8_t* pixel = luma_chroma.row(static_cast<int>(y)).data();
       const uint8_t* background = model_.median.row(static_cast<int>(y)).data();
@@ -88,13 +128,22 @@ void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma) {
       float* evidence = &evidence_[(y + 1) * stride_ + 1];
       float* belief = &belief_[(y + 1) * stride_ + 1];
       uint8_t* differs = &differs_[y * width];
+      // The least of the windows that hold the pixel: those beside it keep clear of the subject's edge.
+      const size_t above = y >= kReach ? y - kReach : y,
+                   below = std::min(y + kReach, static_cast<size_t>(model_.height()) - 1);
+      for (size_t x = 0; x < width; ++x) {
+        least[x] = std::min({texture_[above * width + x], texture_[y * width + x], texture_[below * width + x]});
+      }
       for (size_t x = 0; x < width; ++x) {
         const float plain = square(seen_y[x] - back_y[x]) * weight_y[x] + square(seen_r[x] - back_r[x]) * weight_r[x] +
                             square(seen_b[x] - back_b[x]) * weight_b[x];
         const float factor = std::min(seen_y[x] / std::max(back_y[x], 1.0f), 1.5f);
         const float deviation = factor < 1 ? 1 / kShadowDeviation : 1 / kGlowDeviation;
-        const float shadow = square((factor - 1) * deviation) + square(seen_r[x] - factor * back_r[x]) * weight_r[x] +
-                             square(seen_b[x] - factor * back_b[x]) * weight_b[x];
+        float shadow = square((factor - 1) * deviation) + square(seen_r[x] - factor * back_r[x]) * weight_r[x] +
+                       square(seen_b[x] - factor * back_b[x]) * weight_b[x];
+        const float texture =
+            std::min({least[x >= kReach ? x - kReach : 0], least[x], least[std::min(x + kReach, width - 1)]});
+        shadow += kTextureWeight * std::max(texture * weight_y[x] - 1, 0.0f);
         const float half = 0.5f * (std::min(plain, shadow) - kThreshold);
         evidence[x] = std::min(std::max(half, -kMaxAgainst), kMaxFor);
         belief[x] = squash(evidence[x]);
@@ -236,6 +285,7 @@ Mask ForegroundFinder::find(const ByteImage& luma_chroma) {
   check(luma_chroma.width() == model_.width() && luma_chroma.height() == model_.height() && luma_chroma.channels() == 3,
         "ForegroundFinder: picture {}x{}x{}, background {}x{}", luma_chroma.width(), luma_chroma.height(),
         luma_chroma.channels(), model_.width(), model_.height());
+  compare_texture(luma_chroma);
   weigh_evidence(luma_chroma);
   choose_blocks();
   tie_neighbours(luma_chroma);

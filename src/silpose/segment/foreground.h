@@ -23,6 +23,7 @@ class ForegroundFinder {
   [[nodiscard]] const BackgroundModel& model() const { return model_; }
 
  private:
+  void compare_texture(const ByteImage& luma_chroma);
   void weigh_evidence(const ByteImage& luma_chroma);
   void choose_blocks();
   void tie_neighbours(const ByteImage& luma_chroma);
@@ -34,9 +35,10 @@ class ForegroundFinder {
   BackgroundModel model_;
   size_t stride_ = 0;  // of the fields below: one pixel more than the picture on every side
   int blocks_x_ = 0, blocks_y_ = 0;
-  std::vector<float> inverse_noise_;                          // [3, H, W] 1 / variance
-  std::vector<uint8_t> differs_;                              // would be foreground if there were no shadows
-  std::vector<uint8_t> chosen_;                               // [blocks_y, blocks_x] where anything may be foreground
+  std::vector<float> inverse_noise_;  // [3, H, W] 1 / variance
+  std::vector<float> texture_;        // [H, W] what a scaled background leaves of the luma around, as variance
+  std::vector<uint8_t> differs_;      // would be foreground if there were no shadows
+  std::vector<uint8_t> chosen_;       // [blocks_y, blocks_x] where anything may be foreground
   std::vector<float> evidence_, belief_, next_;               // positive speaks for foreground
   std::vector<float> right_, down_, down_right_, down_left_;  // ties to the neighbour there
 };
