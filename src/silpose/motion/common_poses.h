@@ -1,0 +1,33 @@
+// CommonPoses: a proposal that looks at nothing: what people are most often seen doing, facing each of eight
+// directions. For starting a track.
+// Source: cormier2019 sect. 2.4.1 (starting from known common poses).
+// Threads: as Proposal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "silpose/body/skeleton.h"
+#include "silpose/motion/proposal.h"
+
+namespace silpose {
+
+class CommonPoses final : public Proposal {
+ public:
+  // Poses are told by the DOF names of the human; DOF that a skeleton lacks are left out, poses that then are equal are
+  // given once, and without root_ry there is one heading.
+  explicit CommonPoses(const Skeleton& skeleton);
+
+  // The root's translation is 0. Asked for fewer than there are: a random choice without repetition.
+  [[nodiscard]] StateBatch propose(const Observation& observation, int num_candidates, Rng& rng) const override;
+
+  // All poses [K, D], heading by heading within each named pose; and each row's name.
+  [[nodiscard]] const StateBatch& poses() const { return poses_; }
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  StateBatch poses_;
+  std::vector<std::string> names_;  // [K] "standing", "t-pose", ...
+};
+
+}  // namespace silpose

@@ -1,0 +1,61 @@
+// MotionModel: how particles move between frames.
+//
+// Contract: a state has D' >= D columns, of which the first D are a pose. propagate() moves every state on by dt_s with
+// noise; diffuse() adds noise of given deviations and moves nothing on, as annealing wants between layers. After
+// either, poses are within the skeleton's limits and periodic DOF are wrapped. Particle i of a call draws from the
+// stream (seed, stream, i) alone, so results do not depend on threads.
+//
+//   diffusion               x + N(0, S dt)                                                   D' = D
+//   first-order-augmented   [x, v]: x moves by v; an acceleration that is white noise changes both   D' = 2 D
+//
+// Source: cormier2019 eq. 2.15 and 2.18 (references.bib); augmented state: hue2002.
+// Threads: models are constant; any thread may call.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "silpose/base/result.h"
+#include "silpose/body/skeleton.h"
+#include "silpose/filter/state_batch.h"
+#include "silpose/motion/noise.h"
+
+namespace silpose {
+
+struct MotionOptions {
+  double sigma_deg = kTypicalSigmaDeg;  // deviation of a typical rotation in 1/30 s; every other scales with it
+  double velocity_decay_per_s = 0;      // velocities fall by exp(-decay * dt): 0 is the thesis' equation
+};
+
+class MotionModel {
+ public:
+  virtual ~MotionModel() = default;
+
+  // D': columns of a state.
+  [[nodiscard]] virtual int state_size() const = 0;
+
+  // States [N, D'] of poses [N, D], at rest.
+  [[nodiscard]] virtual StateBatch states_from_poses(const StateBatch& poses) const = 0;
+
+  // The state columns that belong to DOF [..] of a pose: for holding, or recombining, a limb with its velocities.
+  [[nodiscard]] virtual std::vector<int> columns_of(std::span<const int> dofs) const = 0;
+
+  // [D'] noise of 1/30 s on each column, radians, metres, and those per second.
+  [[nodiscard]] virtual std::span<const double> deviation() const = 0;
+
+  // Shapes: states [N, D'] with poses within the limits. REQUIRES: dt_s >= 0.
+  virtual void propagate(StateBatch& states, double dt_s, uint64_t seed, uint64_t stream) const = 0;
+
+  // Shapes: states [N, D'], deviation [D'].
+  virtual void diffuse(StateBatch& states, std::span<const double> deviation, uint64_t seed, uint64_t stream) const = 0;
+};
+
+// A model of a skeleton by its name on the command line; it keeps a copy of the skeleton.
+// Errors: a name that is unknown or not built. Throws std::invalid_argument for options out of range.
+Result<std::unique_ptr<MotionModel>> make_motion_model(const std::string& name, const Skeleton& skeleton,
+                                                       const MotionOptions& options = {});
+
+}  // namespace silpose

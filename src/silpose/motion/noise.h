@@ -1,0 +1,20 @@
+// Noise of a motion model: how far each degree of freedom strays in one frame at 30 per second. A table by DOF name
+// for people who walk and gesture; for the DOF of other skeletons a rule from their range.
+// Threads: a function without state.
+#pragma once
+
+#include <vector>
+
+#include "silpose/body/skeleton.h"
+
+namespace silpose {
+
+inline constexpr double kNoiseInterval_s = 1.0 / 30;  // the interval that noise deviations are stated for
+inline constexpr double kTypicalSigmaDeg = 4;         // the table's own deviation of a large joint, such as the hip
+
+// Standard deviation [D] of each DOF over kNoiseInterval_s, radians and metres; it grows with the square root of time.
+// `sigma_deg` is that of a typical rotation: all others, translations too, scale with it.
+// Errors: throws std::invalid_argument unless sigma_deg is positive and finite.
+[[nodiscard]] std::vector<double> noise_deviation(const Skeleton& skeleton, double sigma_deg = kTypicalSigmaDeg);
+
+}  // namespace silpose
