@@ -19,7 +19,7 @@ struct Phenotype {
   double sex = 0.5;                 // 0 male, 1 female; 0.5 in between
   std::optional<double> height_m;   // stature
   std::optional<double> weight_kg;  // volume x 980 kg/m3
-  double muscle = 0.5;              // 0 to 1
+  std::optional<double> muscle;     // 0 to 1; unset: 0.5, less the further the weight is from average
 };
 
 // "human", "human:age=30,sex=f,height=1.62,weight=58,muscle=0.6". sex: f, m or 0..1. dof= is left to the caller.

@@ -5,7 +5,7 @@
 #include "silpose/base/check.h"
 #include "silpose/body/human.h"
 #include "silpose/body/human_shape.h"
-#include "silpose/body/makehuman_data.h"
+#include "silpose/body/makehuman_assets.h"
 
 namespace silpose {
 namespace {
@@ -101,12 +101,13 @@ std::string text_of_sex(double sex) { return sex == 0 ? "m" : sex == 1 ? "f" : f
 Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenotype) {
   check(phenotype.age_years >= 18 && phenotype.age_years <= 90, "build_human: age {}", phenotype.age_years);
   check(phenotype.sex >= 0 && phenotype.sex <= 1, "build_human: sex {}", phenotype.sex);
-  check(phenotype.muscle >= 0 && phenotype.muscle <= 1, "build_human: muscle {}", phenotype.muscle);
-  const MakeHumanData::Impl& impl = *data.impl_;
-  const Result<Sliders> sliders = solve_sliders(impl.base, impl.targets, phenotype);
+  const double muscle = phenotype.muscle.value_or(0.5);
+  check(muscle >= 0 && muscle <= 1, "build_human: muscle {}", muscle);
+  const MakeHumanAssets& assets = data.impl_->assets;
+  const Result<Sliders> sliders = solve_sliders(assets, phenotype);
   if (!sliders) return sliders.failure();
-  const std::vector<Eigen::Vector3f> shape = shape_vertices(impl.base, impl.targets, *sliders);
-  const RestPose rest(impl.base, shape);
+  const std::vector<Eigen::Vector3f> shape = shape_vertices(assets, *sliders);
+  const RestPose rest(assets.base, shape);
 
   const std::array<Eigen::Vector3d, 20> rest_joints = rest.joints();
   const std::array<Eigen::Matrix3d, 20> rotations = zero_from_rest(rest, rest_joints);
@@ -123,11 +124,11 @@ Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenot
   BodyModel body{.name = "",
                  .skeleton = human_skeleton(zero_joints),
                  .rest = {},
-                 .skin = impl.skin,
+                 .skin = assets.skin,
                  .joint_from_rest = std::move(joint_from_rest),
                  .end_points = {},
                  .height_m = stature_m(shape),
-                 .weight_kg = mass_kg(shape, impl.base.body_faces),
+                 .weight_kg = mass_kg(shape, assets.base.body_faces),
                  .facts = {}};
   const auto add_end_point = [&](const char* name, int joint, const std::string& cube) {
     body.end_points.push_back({name, joint, body.joint_from_rest[joint] * rest.centre(cube)});
@@ -138,13 +139,13 @@ Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenot
   add_end_point("right_finger_tip", kHand, "joint-r-finger-3-4");
   add_end_point("left_finger_tip", kHand + kToLeft, "joint-l-finger-3-4");
 
-  body.rest.faces = impl.base.body_faces;
+  body.rest.faces = assets.base.body_faces;
   for (size_t v = 0; v < kNumBodyVertices; ++v) body.rest.vertices.push_back(rest.vertex(v).cast<float>());
   body.name = fmt::format("human:age={:g},sex={},height={:.3f},weight={:.1f}", phenotype.age_years,
                           text_of_sex(phenotype.sex), body.height_m, body.weight_kg);
-  if (phenotype.muscle != 0.5) body.name += fmt::format(",muscle={:g}", phenotype.muscle);
+  if (phenotype.muscle) body.name += fmt::format(",muscle={:g}", *phenotype.muscle);
   body.facts = {{"source", "MakeHuman (CC0)"},
-                {"source_sha256", impl.hash},
+                {"source_sha256", assets.hash},
                 {"slider_gender", fmt::format("{:.6f}", sliders->gender)},
                 {"slider_age", fmt::format("{:.6f}", sliders->age)},
                 {"slider_muscle", fmt::format("{:.6f}", sliders->muscle)},

@@ -45,17 +45,26 @@ void for_each_target(const Sliders& s, const Use& use) {
   }
 }
 
-// The shape is linear in the height slider, and between neighbouring anchors in the weight slider: six shapes give all.
+// The muscle slider that goes with a weight slider. The weight slider alone changes the mass of an average build by a
+// tenth only; heavy and light bodies need less muscle with it (BMI 15 to 41 instead of 20 to 24 for men).
+double muscle_slider(const Phenotype& phenotype, double weight) {
+  return phenotype.muscle.value_or(0.5 - std::abs(weight - 0.5));
+}
+
+// The shape is linear in the height slider, and between neighbouring anchors in the weight and muscle sliders: the
+// shapes at the anchors give all others.
 class ShapeGrid {
  public:
-  ShapeGrid(const MakeHumanMesh& base, const std::map<std::string, MakeHumanTarget>& targets, Sliders sliders)
-      : faces_(base.body_faces), blend_(kNumBodyVertices) {
-    for (int w = 0; w < 3; ++w) {
-      for (int h = 0; h < 2; ++h) {
-        sliders.weight = 0.5 * w;
-        sliders.height = h;
-        shapes_[w][h] = shape_vertices(base, targets, sliders);
-        shapes_[w][h].resize(kNumBodyVertices);
+  ShapeGrid(const MakeHumanAssets& assets, const Phenotype& phenotype, Sliders sliders)
+      : phenotype_(phenotype), faces_(assets.base.body_faces), blend_(kNumBodyVertices) {
+    for (int m = 0; m < 2; ++m) {
+      for (int w = 0; w < 3; ++w) {
+        for (int h = 0; h < 2; ++h) {
+          sliders.muscle = phenotype.muscle.value_or(0.5 * m);
+          sliders.weight = 0.5 * w;
+          sliders.height = h;
+          shapes_[m][w][h] = shape_vertices(assets, sliders);
+        }
       }
     }
   }
@@ -64,18 +73,27 @@ class ShapeGrid {
 
  private:
   std::span<const Eigen::Vector3f> blend(double weight, double height) {
-    const int w = weight < 0.5 ? 0 : 1;
-    const double upper = 2 * weight - w;
-    const float c00 = static_cast<float>((1 - upper) * (1 - height)), c01 = static_cast<float>((1 - upper) * height);
-    const float c10 = static_cast<float>(upper * (1 - height)), c11 = static_cast<float>(upper * height);
-    for (size_t v = 0; v < blend_.size(); ++v) {
-      blend_[v] = c00 * shapes_[w][0][v] + c01 * shapes_[w][1][v] + c10 * shapes_[w + 1][0][v] +
-                  c11 * shapes_[w + 1][1][v];
+    const int low = weight < 0.5 ? 0 : 1;
+    const double upper_weight = 2 * weight - low;
+    const double upper_muscle = phenotype_.muscle ? 0 : 2 * muscle_slider(phenotype_, weight);
+    std::fill(blend_.begin(), blend_.end(), Eigen::Vector3f::Zero());
+    for (int m = 0; m < 2; ++m) {
+      for (int w = 0; w < 2; ++w) {
+        for (int h = 0; h < 2; ++h) {
+          const double coefficient = (m == 1 ? upper_muscle : 1 - upper_muscle) *
+                                     (w == 1 ? upper_weight : 1 - upper_weight) * (h == 1 ? height : 1 - height);
+          if (coefficient == 0) continue;
+          const float c = static_cast<float>(coefficient);
+          const std::vector<Eigen::Vector3f>& shape = shapes_[m][low + w][h];
+          for (size_t v = 0; v < blend_.size(); ++v) blend_[v] += c * shape[v];
+        }
+      }
     }
     return blend_;
   }
+  const Phenotype& phenotype_;
   std::span<const Face> faces_;
-  std::vector<Eigen::Vector3f> shapes_[3][2];
+  std::vector<Eigen::Vector3f> shapes_[2][3][2];
   std::vector<Eigen::Vector3f> blend_;
 };
 
@@ -110,12 +128,10 @@ double mean_height_slider(double sex) {
   return 0.391 + (0.347 - 0.391) * sex;
 }
 
-std::vector<Eigen::Vector3f> shape_vertices(const MakeHumanMesh& base,
-                                            const std::map<std::string, MakeHumanTarget>& targets,
-                                            const Sliders& sliders) {
-  std::vector<Eigen::Vector3f> vertices = base.vertices;
+std::vector<Eigen::Vector3f> shape_vertices(const MakeHumanAssets& assets, const Sliders& sliders) {
+  std::vector<Eigen::Vector3f> vertices = assets.base.vertices;
   for_each_target(sliders, [&](const std::string& name, double coefficient) {
-    const MakeHumanTarget& target = targets.at(name);
+    const MakeHumanTarget& target = assets.targets.at(name);
     const float c = static_cast<float>(coefficient);
     for (size_t i = 0; i < target.offset.size(); ++i) vertices[target.vertex_idx[i]] += c * target.offset[i];
   });
@@ -142,17 +158,13 @@ double mass_kg(std::span<const Eigen::Vector3f> vertices, std::span<const Face> 
   return kDensity * six_volumes / 6 * 1e-3;
 }
 
-Result<Sliders> solve_sliders(const MakeHumanMesh& base, const std::map<std::string, MakeHumanTarget>& targets,
-                              const Phenotype& phenotype) {
-  Sliders sliders{.gender = phenotype.sex, .age = age_slider(phenotype.age_years), .muscle = phenotype.muscle};
+Result<Sliders> solve_sliders(const MakeHumanAssets& assets, const Phenotype& phenotype) {
+  Sliders sliders{.gender = phenotype.sex, .age = age_slider(phenotype.age_years)};
+  sliders.muscle = muscle_slider(phenotype, sliders.weight);
   sliders.height = mean_height_slider(phenotype.sex);
   if (!phenotype.height_m && !phenotype.weight_kg) return sliders;
 
-  ShapeGrid grid(base, targets, sliders);
-  const auto height_at = [&](double weight) {
-    if (!phenotype.height_m) return sliders.height;
-    return bisect([&](double h) { return grid.stature(weight, h); }, *phenotype.height_m, 1e-5);
-  };
+  ShapeGrid grid(assets, phenotype, sliders);
   if (phenotype.height_m) {
     const double lowest = grid.stature(0.5, 0), highest = grid.stature(0.5, 1);
     if (*phenotype.height_m < lowest || *phenotype.height_m > highest) {
@@ -160,13 +172,20 @@ Result<Sliders> solve_sliders(const MakeHumanMesh& base, const std::map<std::str
                    highest);
     }
   }
+  const double average_height = sliders.height;
+  const auto height_at = [&](double weight) {
+    if (!phenotype.height_m) return average_height;
+    return bisect([&](double height) { return grid.stature(weight, height); }, *phenotype.height_m, 1e-5);
+  };
   if (phenotype.weight_kg) {
     const double lightest = grid.mass(0, height_at(0)), heaviest = grid.mass(1, height_at(1));
     if (*phenotype.weight_kg < lightest || *phenotype.weight_kg > heaviest) {
       return error("weight: {:.1f} kg is out of this body's range, {:.1f} to {:.1f} kg", *phenotype.weight_kg,
                    lightest, heaviest);
     }
-    sliders.weight = bisect([&](double w) { return grid.mass(w, height_at(w)); }, *phenotype.weight_kg, 1e-3);
+    sliders.weight =
+        bisect([&](double weight) { return grid.mass(weight, height_at(weight)); }, *phenotype.weight_kg, 1e-3);
+    sliders.muscle = muscle_slider(phenotype, sliders.weight);
   }
   sliders.height = height_at(sliders.weight);
   return sliders;

@@ -5,14 +5,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <map>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "silpose/base/result.h"
 #include "silpose/body/human.h"
-#include "silpose/body/makehuman_files.h"
+#include "silpose/body/makehuman_assets.h"
 
 namespace silpose {
 
@@ -31,16 +29,13 @@ struct Sliders {
 [[nodiscard]] double mean_height_slider(double sex);
 
 // Every vertex [19158] of the shape, file units (decimetres).
-[[nodiscard]] std::vector<Eigen::Vector3f> shape_vertices(const MakeHumanMesh& base,
-                                                          const std::map<std::string, MakeHumanTarget>& targets,
-                                                          const Sliders& sliders);
+[[nodiscard]] std::vector<Eigen::Vector3f> shape_vertices(const MakeHumanAssets& assets, const Sliders& sliders);
 
 // Metres and kilograms of a shape: extent of the body along Y; volume x 980 kg/m3.
 [[nodiscard]] double stature_m(std::span<const Eigen::Vector3f> vertices);
 [[nodiscard]] double mass_kg(std::span<const Eigen::Vector3f> vertices, std::span<const Face> body_faces);
 
 // The sliders that give the phenotype. Errors: stature or mass out of reach, naming the range.
-Result<Sliders> solve_sliders(const MakeHumanMesh& base, const std::map<std::string, MakeHumanTarget>& targets,
-                              const Phenotype& phenotype);
+Result<Sliders> solve_sliders(const MakeHumanAssets& assets, const Phenotype& phenotype);
 
 }  // namespace silpose

@@ -4,16 +4,33 @@
 #include "silpose/body/body_model.h"
 
 namespace silpose {
+namespace {
+
+std::vector<Face> faces_of(const std::vector<uint32_t>& indices) {
+  std::vector<Face> faces;
+  for (size_t i = 0; i < indices.size(); i += 3) faces.push_back({indices[i], indices[i + 1], indices[i + 2]});
+  return faces;
+}
+
+}  // namespace
 
 BodyModel level_of_detail(const BodyModel& body, int num_vertices) {
   check(num_vertices >= 100, "level_of_detail: {} vertices are too few", num_vertices);
   const std::vector<Eigen::Vector3f>& x = body.rest.vertices;
   std::vector<uint32_t> indices;
   for (const Face& face : body.rest.faces) indices.insert(indices.end(), face.begin(), face.end());
-  std::vector<uint32_t> kept(indices.size());
-  const size_t target = 3 * 2 * static_cast<size_t>(num_vertices - 2);
-  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), x[0].data(), x.size(),
-                               sizeof(Eigen::Vector3f), target, 1.0f));
+  const bool closed = is_closed(body.rest.faces);
+  std::vector<uint32_t> kept = indices;
+  // A closed surface of V vertices has 2 (V - 2) faces. Where a collapse has pinched the surface, a little more detail
+  // usually has not; the whole mesh is the last resort.
+  size_t num_faces = 2 * static_cast<size_t>(num_vertices - 2);
+  for (; 3 * num_faces < indices.size(); num_faces += 2 + num_faces / 100) {
+    kept.resize(indices.size());
+    kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), x[0].data(), x.size(),
+                                 sizeof(Eigen::Vector3f), 3 * num_faces, 1.0f, 0, nullptr));
+    if (!closed || is_closed(faces_of(kept))) break;
+    kept = indices;
+  }
   BodyModel out = body;
   out.rest = {};
   out.skin = {.row_start = {0}, .joint_idx = {}, .weight = {}};
@@ -30,9 +47,8 @@ BodyModel level_of_detail(const BodyModel& body, int num_vertices) {
     }
     out.skin.row_start.push_back(static_cast<uint32_t>(out.skin.weight.size()));
   }
-  for (size_t i = 0; i < kept.size(); i += 3) {
-    out.rest.faces.push_back({new_from_old[kept[i]], new_from_old[kept[i + 1]], new_from_old[kept[i + 2]]});
-  }
+  for (uint32_t& v : kept) v = new_from_old[v];
+  out.rest.faces = faces_of(kept);
   return out;
 }
 

@@ -1,6 +1,8 @@
-// What MakeHumanData holds. Private to the module `body`: users see human.h.
+// The MakeHuman data in memory, checked by hash. Private to the module `body`: users see human.h.
+// Threads: constant after loading.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 
@@ -9,11 +11,18 @@
 
 namespace silpose {
 
-struct MakeHumanData::Impl {
+struct MakeHumanAssets {
   MakeHumanMesh base;
   SkinWeights skin;                                // of the body vertices on the 20 joints
   std::map<std::string, MakeHumanTarget> targets;  // by name without ".target.gz"
   std::string hash;                                // SHA-256 of the list of all files' SHA-256
+};
+
+// Errors: as MakeHumanData::load.
+Result<MakeHumanAssets> load_makehuman_assets(const std::filesystem::path& directory);
+
+struct MakeHumanData::Impl {
+  MakeHumanAssets assets;
 };
 
 }  // namespace silpose

@@ -1,4 +1,4 @@
-#include "silpose/body/makehuman_data.h"
+#include "silpose/body/makehuman_assets.h"
 
 #include <openssl/evp.h>
 
@@ -68,6 +68,14 @@ MakeHumanData& MakeHumanData::operator=(MakeHumanData&&) noexcept = default;
 MakeHumanData::~MakeHumanData() = default;
 
 Result<MakeHumanData> MakeHumanData::load(const std::filesystem::path& directory) {
+  Result<MakeHumanAssets> assets = load_makehuman_assets(directory);
+  if (!assets) return assets.failure();
+  MakeHumanData data;
+  data.impl_->assets = std::move(*assets);
+  return data;
+}
+
+Result<MakeHumanAssets> load_makehuman_assets(const std::filesystem::path& directory) {
   if (std::error_code ignored; !std::filesystem::is_directory(directory, ignored)) {
     return error("{}: no body data; scripts/fetch-body-data fetches it", directory.string());
   }
@@ -93,15 +101,14 @@ Result<MakeHumanData> MakeHumanData::load(const std::filesystem::path& directory
     if (!failures[i].empty()) return error("{} (scripts/fetch-body-data fetches the body data)", failures[i]);
     list += fmt::format("{}  {}\n", hashes[i], paths[i]);
   }
-  MakeHumanData data;
-  Impl& impl = *data.impl_;
-  impl.hash = sha256(list);
-  if (impl.hash != kListSha256) {
+  MakeHumanAssets assets;
+  assets.hash = sha256(list);
+  if (assets.hash != kListSha256) {
     return error("{}: not the expected body data (SHA-256 of its list is {}); scripts/fetch-body-data fetches it anew",
-                 directory.string(), impl.hash);
+                 directory.string(), assets.hash);
   }
 
-  for (const std::string& name : names) impl.targets[name];  // so that threads find each its own
+  for (const std::string& name : names) assets.targets[name];  // so that threads find each its own
   const auto content_of = [&](const std::string& path) -> const std::string& {
     return contents[std::lower_bound(paths.begin(), paths.end(), path) - paths.begin()];
   };
@@ -111,16 +118,16 @@ Result<MakeHumanData> MakeHumanData::load(const std::filesystem::path& directory
       Result<void> done;
       if (paths[i] == "base.obj") {
         Result<MakeHumanMesh> base = parse_makehuman_mesh(where, contents[i]);
-        base ? void(impl.base = std::move(*base)) : void(done = base.failure());
+        base ? void(assets.base = std::move(*base)) : void(done = base.failure());
       } else if (paths[i] == "weights.default.json") {
         Result<SkinWeights> skin =
             parse_makehuman_weights(where, content_of("rig.default.json"), contents[i], joint_from_bone());
-        skin ? void(impl.skin = std::move(*skin)) : void(done = skin.failure());
+        skin ? void(assets.skin = std::move(*skin)) : void(done = skin.failure());
       } else if (paths[i].starts_with("targets/")) {
         const std::string name = paths[i].substr(8, paths[i].size() - 8 - std::string_view(".target.gz").size());
         const Result<std::string> text = gunzip(where, contents[i], kMaxTargetBytes);
         Result<MakeHumanTarget> target = text ? parse_makehuman_target(where, *text) : text.failure();
-        target ? void(impl.targets.at(name) = std::move(*target)) : void(done = target.failure());
+        target ? void(assets.targets.at(name) = std::move(*target)) : void(done = target.failure());
       }
       if (!done) failures[i] = done.error().message;
     }
@@ -128,7 +135,7 @@ Result<MakeHumanData> MakeHumanData::load(const std::filesystem::path& directory
   for (const std::string& failure : failures) {
     if (!failure.empty()) return error("{}", failure);
   }
-  return data;
+  return assets;
 }
 
 }  // namespace silpose
