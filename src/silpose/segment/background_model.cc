@@ -12,7 +12,9 @@ namespace silpose {
 namespace {
 
 // Grey levels. Compressed video repeats blocks unchanged, so a deviation of 0 over time does not mean no noise.
-constexpr std::array<float, 3> kNoiseFloor = {2.5f, 1.5f, 1.5f};
+constexpr std::array<float, 3> kNoiseFloor = {2.5f, 1.1f, 1.1f};
+// A plate is encoded and exposed by itself.
+constexpr std::array<float, 3> kPlateFloor = {3.0f, 1.8f, 1.8f};
 constexpr float kMadToDeviation = 1.4826f;
 // Where the subject stands in nearly half of the samples the median deviation is the subject's: the lower third of the
 // deviations bounds it, loosely, as grey levels are coarse for so small a quantile.
@@ -92,11 +94,11 @@ void median_and_deviation(const std::vector<ByteImage>& images, ByteImage& media
 
 // Noise is alike in neighbouring pixels, and one pixel's deviation over few samples is not sure: average it with those
 // around it, and keep to the floor.
-void steady_noise(Image<float>& noise) {
+void steady_noise(Image<float>& noise, const std::array<float, 3>& floor) {
   cv::Mat view(noise.height(), noise.width(), CV_32FC3, noise.pixels().data());
   cv::Mat around;
   cv::blur(view, around, cv::Size(3, 3));
-  view = cv::max(view * 0.5 + around * 0.5, cv::Scalar(kNoiseFloor[0], kNoiseFloor[1], kNoiseFloor[2]));
+  view = cv::max(view * 0.5 + around * 0.5, cv::Scalar(floor[0], floor[1], floor[2]));
 }
 
 }  // namespace
@@ -143,7 +145,7 @@ BackgroundModel learn_background(const BackgroundSamples& samples) {
   const int width = samples.images[0].width(), height = samples.images[0].height();
   BackgroundModel model{.median = ByteImage(width, height, 3), .noise = Image<float>(width, height, 3)};
   median_and_deviation(samples.images, model.median, model.noise);
-  steady_noise(model.noise);
+  steady_noise(model.noise, kNoiseFloor);
   return model;
 }
 
@@ -164,8 +166,8 @@ BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSa
   cv::Sobel(median, slope_x, CV_32F, 1, 0, 3, 1.0 / 8);
   cv::Sobel(median, slope_y, CV_32F, 0, 1, 3, 1.0 / 8);
   const cv::Mat slope = 0.25 * (cv::abs(slope_x) + cv::abs(slope_y));
-  noise = cv::min(noise, 3 * cv::Scalar(kNoiseFloor[0], kNoiseFloor[1], kNoiseFloor[2])) + slope;
-  steady_noise(model.noise);
+  noise = cv::min(noise, 3 * cv::Scalar(kPlateFloor[0], kPlateFloor[1], kPlateFloor[2])) + slope;
+  steady_noise(model.noise, kPlateFloor);
   return model;
 }
 
