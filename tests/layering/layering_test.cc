@@ -1,0 +1,98 @@
+// The project itself obeys the rules; and the rules refuse what they should, on small trees made here.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "source_rules.h"
+
+namespace silpose {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+namespace fs = std::filesystem;
+
+const fs::path kProject = SILPOSE_SOURCE_DIR;
+
+TEST(Project, IncludesOnlyLowerFloors) {
+  EXPECT_THAT(include_violations(kProject, parse_floors(SILPOSE_FLOORS)), IsEmpty());
+}
+TEST(Project, HasNoFolderThatSaysNothing) { EXPECT_THAT(folder_violations(kProject), IsEmpty()); }
+TEST(Project, CitesOnlyWhatTheBibliographyHolds) { EXPECT_THAT(citation_violations(kProject), IsEmpty()); }
+
+class SourceRules : public testing::Test {
+ protected:
+  void SetUp() override {
+    root_ = fs::path(testing::TempDir()) /
+            (std::string("layering_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(root_);
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  void write(const fs::path& file, const std::string& text) {
+    fs::create_directories((root_ / file).parent_path());
+    std::ofstream(root_ / file) << text;
+  }
+
+  fs::path root_;
+  Floors floors_ = parse_floors("base=0 geometry=1 image=1 filter=1 body=2 board=2 render=3 store=3 synth=4 recording=6");
+};
+
+TEST_F(SourceRules, LowerFloorsOwnModuleAndOtherLibrariesMayBeIncluded) {
+  write("src/silpose/body/a.cc",
+        "#include \"silpose/body/a.h\"\n#include \"silpose/geometry/b.h\"\n#include <vector>\n#include <Eigen/Core>\n");
+  write("src/silpose/recording/a.h", "#include \"sadb/board/board.h\"\n");
+  write("src/sadb/store/a.h", "#include \"sadb/board/board.h\"\n#include \"silpose/image/mask.h\"\n");
+  write("src/silpose/silpose.h", "#include \"silpose/recording/a.h\"\n");
+  EXPECT_THAT(include_violations(root_, floors_), IsEmpty());
+}
+
+TEST_F(SourceRules, RefusesTheSameAndHigherFloors) {
+  write("src/silpose/geometry/a.cc", "// first\n#include \"silpose/image/mask.h\"\n");
+  write("src/silpose/geometry/b.h", "  #  include <silpose/render/silhouette.h>\n");
+  EXPECT_THAT(include_violations(root_, floors_),
+              ElementsAre("src/silpose/geometry/a.cc:2: geometry (floor 1) includes image (floor 1)",
+                          "src/silpose/geometry/b.h:1: geometry (floor 1) includes render (floor 3)"));
+}
+
+TEST_F(SourceRules, TestsAloneMayUseSynth) {
+  const std::string text = "#include \"silpose/synth/scene.h\"\n";
+  write("src/silpose/render/a_test.cc", text);
+  EXPECT_THAT(include_violations(root_, floors_), IsEmpty());
+  write("src/silpose/render/a.cc", text);
+  write("src/silpose/body/b_test.cc", "#include \"silpose/render/a.h\"\n");
+  EXPECT_EQ(include_violations(root_, floors_).size(), 2U);
+}
+
+TEST_F(SourceRules, KeepsSadbApart) {
+  write("src/sadb/store/a.cc", "#include \"silpose/body/skeleton.h\"\n");
+  write("src/silpose/synth/a.cc", "#include \"sadb/board/board.h\"\n");
+  EXPECT_THAT(include_violations(root_, floors_),
+              ElementsAre(HasSubstr("sadb sees only"), HasSubstr("does not see sadb")));
+}
+
+TEST_F(SourceRules, RefusesModulesWithoutAFloor) {
+  write("src/silpose/body/a.cc", "#include \"silpose/magic/wand.h\"\n");
+  EXPECT_THAT(include_violations(root_, floors_), ElementsAre(HasSubstr("'magic' has no floor")));
+}
+
+TEST_F(SourceRules, RefusesFoldersThatSayNothing) {
+  write("src/silpose/util/a.h", "");
+  write("apps/silpose/common/a.h", "");
+  write("src/silpose/commonplace/a.h", "");
+  EXPECT_THAT(folder_violations(root_), ElementsAre(HasSubstr("apps/silpose/common"), HasSubstr("src/silpose/util")));
+}
+
+TEST_F(SourceRules, RefusesCitationsThatDoNotResolve) {
+  write("docs/references.bib", "@article{deutscher2005,\n title = {x}\n}\n@book{ opencv , }\n");
+  write("src/silpose/body/a.h",
+        "// Source: deutscher2005, eq. 3 (references.bib: opencv; deutscher2005 for the rest).\n"
+        "int x2005 = 0xab2001;  // fine\n// See kalman1960a.\n// (references.bib: opencv, makehuman)\n");
+  EXPECT_THAT(citation_violations(root_), ElementsAre("src/silpose/body/a.h:3: 'kalman1960a' is not in docs/references.bib",
+                                                      "src/silpose/body/a.h:4: 'makehuman' is not in docs/references.bib"));
+}
+
+}  // namespace
+}  // namespace silpose

@@ -1,0 +1,156 @@
+#include "source_rules.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <functional>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace silpose {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kRecording = "recording";  // the lowest module of silpose that sees sadb
+
+// Calls visit(path from the root, line number, line) for every line of every C++ file under the folder, in name order.
+void for_each_line(const fs::path& root, const fs::path& folder,
+                   const std::function<void(const fs::path&, int, const std::string&)>& visit) {
+  if (!fs::is_directory(root / folder)) return;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+    const fs::path extension = entry.path().extension();
+    if (entry.is_regular_file() && (extension == ".h" || extension == ".cc")) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    std::ifstream stream(file);
+    std::string line;
+    for (int number = 1; std::getline(stream, line); ++number) visit(file.lexically_relative(root), number, line);
+  }
+}
+
+std::string at(const fs::path& file, int line, const std::string& what) {
+  return file.generic_string() + ":" + std::to_string(line) + ": " + what;
+}
+
+// "src/silpose/geometry/camera.h" -> {"silpose", "geometry"}; empty where a path is not of a module.
+struct Place {
+  std::string project, module;
+};
+Place place_of(const fs::path& path_in_src) {
+  std::vector<std::string> parts;
+  for (const fs::path& part : path_in_src) parts.push_back(part.string());
+  if (parts.size() < 3) return {parts.empty() ? "" : parts[0], ""};
+  return {parts[0], parts[1]};
+}
+
+// Why `from` may not include `to`; empty where it may.
+std::string refusal(const Place& from, const Place& to, bool is_test, const Floors& floors) {
+  if (from.project == to.project && from.module == to.module) return "";
+  const auto own = floors.find(from.module), other = floors.find(to.module);
+  if (own == floors.end()) return "module '" + from.module + "' has no floor in cmake/modules.cmake";
+  if (other == floors.end()) return "module '" + to.module + "' has no floor in cmake/modules.cmake";
+  if (is_test && to.module == "synth") return "";
+  if (other->second >= own->second) {
+    return from.module + " (floor " + std::to_string(own->second) + ") includes " + to.module + " (floor " +
+           std::to_string(other->second) + ")";
+  }
+  if (from.project == "sadb" && to.project == "silpose" && to.module != "base" && to.module != "geometry" &&
+      to.module != "image") {
+    return "sadb sees only base, geometry and image of silpose, not " + to.module;
+  }
+  const auto recording = floors.find(kRecording);
+  if (from.project == "silpose" && to.project == "sadb" && recording != floors.end() &&
+      own->second < recording->second) {
+    return from.module + " stands below recording and does not see sadb";
+  }
+  return "";
+}
+
+std::set<std::string> bibliography_keys(const fs::path& file) {
+  static const std::regex kEntry(R"(^\s*@\w+\s*\{\s*([^,\s]+)\s*,)");
+  std::set<std::string> keys;
+  std::ifstream stream(file);
+  std::string line;
+  for (std::smatch match; std::getline(stream, line);) {
+    if (std::regex_search(line, match, kEntry)) keys.insert(match[1]);
+  }
+  return keys;
+}
+
+// Keys a comment cites. A list after "references.bib:" runs to the closing bracket or the line's end; of each item the
+// first word is the key ("deutscher2005; deutscher2000 for the decay").
+std::set<std::string> cited_keys(const std::string& comment) {
+  static const std::regex kKey(R"(\b[a-z]{2,}(19|20)[0-9]{2}[a-z]?\b)"), kList(R"(references\.bib:([^)]*))"),
+      kItem(R"(\s*([A-Za-z0-9_-]+)[^,;]*[,;]?)");
+  std::set<std::string> keys;
+  for (std::sregex_iterator it(comment.begin(), comment.end(), kKey), end; it != end; ++it) keys.insert(it->str());
+  for (std::sregex_iterator it(comment.begin(), comment.end(), kList), end; it != end; ++it) {
+    const std::string list = (*it)[1];
+    for (std::sregex_iterator item(list.begin(), list.end(), kItem); item != end; ++item) keys.insert((*item)[1]);
+  }
+  return keys;
+}
+
+}  // namespace
+
+Floors parse_floors(std::string_view text) {
+  Floors floors;
+  std::istringstream stream{std::string(text)};
+  for (std::string entry; stream >> entry;) {
+    const size_t equals = entry.find('=');
+    if (equals != std::string::npos) floors[entry.substr(0, equals)] = std::stoi(entry.substr(equals + 1));
+  }
+  return floors;
+}
+
+std::vector<std::string> include_violations(const fs::path& root, const Floors& floors) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*["<]((silpose|sadb)/[^">]+)[">])");
+  std::vector<std::string> violations;
+  for_each_line(root, "src", [&](const fs::path& file, int number, const std::string& line) {
+    std::smatch match;
+    if (!std::regex_search(line, match, kInclude)) return;
+    const fs::path included = match[1].str();
+    const Place from = place_of(file.lexically_relative("src"));
+    if (from.module.empty()) return;  // the umbrella header stands above all modules
+    const bool is_test = file.stem().string().ends_with("_test");
+    const std::string reason = refusal(from, place_of(included), is_test, floors);
+    if (!reason.empty()) violations.push_back(at(file, number, reason));
+  });
+  return violations;
+}
+
+std::vector<std::string> folder_violations(const fs::path& root) {
+  static const std::set<std::string> kRefused = {"util", "utils", "utility", "common", "core", "helper", "helpers", "misc"};
+  std::vector<std::string> violations;
+  for (const char* top : {"src", "apps", "bench", "examples", "tests"}) {
+    if (!fs::is_directory(root / top)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / top)) {
+      if (entry.is_directory() && kRefused.contains(entry.path().filename().string())) {
+        violations.push_back(entry.path().lexically_relative(root).generic_string() + ": a name that says nothing");
+      }
+    }
+  }
+  std::sort(violations.begin(), violations.end());
+  return violations;
+}
+
+std::vector<std::string> citation_violations(const fs::path& root) {
+  const std::set<std::string> known = bibliography_keys(root / "docs" / "references.bib");
+  std::vector<std::string> violations;
+  for (const char* top : {"src", "apps", "bench", "examples"}) {
+    for_each_line(root, top, [&](const fs::path& file, int number, const std::string& line) {
+      const size_t comment = line.find("//");
+      if (comment == std::string::npos) return;
+      for (const std::string& key : cited_keys(line.substr(comment))) {
+        if (!known.contains(key)) violations.push_back(at(file, number, "'" + key + "' is not in docs/references.bib"));
+      }
+    });
+  }
+  return violations;
+}
+
+}  // namespace silpose

@@ -1,0 +1,30 @@
+// The rules of ARCHITECTURE.md that the build does not enforce by itself, over the text of a source tree.
+// Each function returns one line a violation, "file:line: what is wrong"; none: the tree obeys.
+// Threads: functions without state.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace silpose {
+
+using Floors = std::map<std::string, int, std::less<>>;
+
+// "base=0 geometry=1 ..." as cmake/modules.cmake holds it.
+Floors parse_floors(std::string_view text);
+
+// #include lines under ROOT/src: a module of silpose or sadb includes itself and modules of strictly lower floors; its
+// tests also `synth`. sadb sees only base, geometry and image of silpose; below `recording`, silpose does not see sadb.
+std::vector<std::string> include_violations(const std::filesystem::path& root, const Floors& floors);
+
+// Folders whose name hides what is in them, anywhere under ROOT/{src,apps,bench,examples,tests}.
+std::vector<std::string> folder_violations(const std::filesystem::path& root);
+
+// Keys of sources cited in comments ("deutscher2005", or any word in a list after "references.bib:") under
+// ROOT/{src,apps,bench,examples} that ROOT/docs/references.bib does not hold.
+std::vector<std::string> citation_violations(const std::filesystem::path& root);
+
+}  // namespace silpose
