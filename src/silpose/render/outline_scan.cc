@@ -9,15 +9,14 @@ namespace {
 
 // 1 for triangles that wind clockwise on the screen or have no area, -1 for the others.
 int8_t facing_of(GridPoint a, GridPoint b, GridPoint c) {
-  const int64_t left = int64_t{b.x - a.x} * (c.y - a.y);
-  const int64_t right = int64_t{b.y - a.y} * (c.x - a.x);
-  return static_cast<int8_t>(left >= right ? 1 : -1);
+  const int64_t area = int64_t{b.x - a.x} * (c.y - a.y) - int64_t{b.y - a.y} * (c.x - a.x);
+  return static_cast<int8_t>(area >> 63 | 1);  // the sign, without a branch: it is as good as random
 }
 
 }  // namespace
 
 OutlineScan::OutlineScan(const EdgeTopology& topology)
-    : topology_(&topology), facing_(topology.faces.size() + 1, 0), outline_(topology.edges.faces.size()) {}
+    : topology_(&topology), facing_(topology.faces.size() + 1, 0), outline_(topology.edges.faces.size() + 1) {}
 
 void OutlineScan::scan(std::span<const GridPoint> points, bool some_unseen, int width, int height) {
   check(points.size() >= topology_->num_vertices, "OutlineScan: {} points for {} vertices", points.size(),
@@ -28,25 +27,21 @@ void OutlineScan::scan(std::span<const GridPoint> points, bool some_unseen, int 
   }
   width_ = width;
   height_ = height;
-  row_begin_ = height;
-  row_end_ = 0;
   std::ranges::fill(row_size_, 0u);
 
   some_unseen ? find_facing_of_seen(points) : find_facing(points);
   find_outline();
-  for (size_t i = 0; i < num_outline_; ++i) {
-    const uint32_t edge = outline_[i];
-    const auto [along, against] = topology_->edges.faces[edge];
-    const auto [from, to] = topology_->edges.vertices[edge];
-    add_edge(points[from], points[to], facing_[along] - facing_[against]);
-  }
+  orient_outline(points);
+  for (size_t i = 0; i < num_edges_; ++i) add_crossings(edges_[i]);
 }
 
 void OutlineScan::find_facing(std::span<const GridPoint> points) {
-  const std::vector<Face>& faces = topology_->faces;
-  for (size_t f = 0; f < faces.size(); ++f) {
-    facing_[f] = facing_of(points[faces[f][0]], points[faces[f][1]], points[faces[f][2]]);
-  }
+  // Plain pointers: stores of bytes could else change the vectors themselves, for all the compiler knows.
+  const GridPoint* const point = points.data();
+  const Face* const face = topology_->faces.data();
+  int8_t* const facing = facing_.data();
+  const size_t count = topology_->faces.size();
+  for (size_t f = 0; f < count; ++f) facing[f] = facing_of(point[face[f][0]], point[face[f][1]], point[face[f][2]]);
 }
 
 void OutlineScan::find_facing_of_seen(std::span<const GridPoint> points) {
@@ -59,40 +54,62 @@ void OutlineScan::find_facing_of_seen(std::span<const GridPoint> points) {
 
 void OutlineScan::find_outline() {
   // Branch-free: every edge is written, and kept by moving on. Few are, and not predictably.
-  const auto& edge_faces = topology_->edges.faces;
+  const auto* const edge_faces = topology_->edges.faces.data();
+  const int8_t* const facing = facing_.data();
+  uint32_t* const outline = outline_.data();
+  const auto num_edges = static_cast<uint32_t>(topology_->edges.faces.size());
   size_t count = 0;
-  for (uint32_t e = 0; e < edge_faces.size(); ++e) {
-    outline_[count] = e;
-    count += static_cast<size_t>(facing_[edge_faces[e][0]] != facing_[edge_faces[e][1]]);
+  for (uint32_t e = 0; e < num_edges; ++e) {
+    outline[count] = e;
+    count += static_cast<size_t>(facing[edge_faces[e][0]] != facing[edge_faces[e][1]]);
   }
   num_outline_ = count;
 }
 
-void OutlineScan::add_edge(GridPoint a, GridPoint b, int change) {
-  if (a.y > b.y) {
-    std::swap(a, b);
-    change = -change;
+void OutlineScan::orient_outline(std::span<const GridPoint> points) {
+  edges_.resize(std::max(edges_.size(), num_outline_ + 1));
+  const auto* const edge_faces = topology_->edges.faces.data();
+  const auto* const edge_vertices = topology_->edges.vertices.data();
+  OutlineEdge* const edges = edges_.data();
+  size_t count = 0;
+  int first_row = height_, end_row = 0;
+  for (size_t i = 0; i < num_outline_; ++i) {
+    const uint32_t edge = outline_[i];
+    const auto [along, against] = edge_faces[edge];
+    const GridPoint a = points[edge_vertices[edge][0]], b = points[edge_vertices[edge][1]];
+    // Again without branches: which end is up, and whether a row's centre lies between, are as good as random.
+    const int32_t upwards = (b.y - a.y) >> 31;  // all ones when b is above a
+    const GridPoint top{a.x ^ ((a.x ^ b.x) & upwards), a.y ^ ((a.y ^ b.y) & upwards)};
+    const GridPoint bottom{a.x ^ b.x ^ top.x, a.y ^ b.y ^ top.y};
+    const int change = ((facing_[along] - facing_[against]) ^ upwards) - upwards;
+    const int begin = std::max(first_centre_from(top.y), 0);
+    const int end = std::min(first_centre_from(bottom.y), height_);
+    const bool crosses = begin < end && first_centre_from(std::min(a.x, b.x)) < width_;
+    edges[count] = {top, bottom.x - top.x, bottom.y - top.y, begin, end, change};
+    first_row = crosses ? std::min(first_row, begin) : first_row;
+    end_row = crosses ? std::max(end_row, end) : end_row;
+    count += static_cast<size_t>(crosses);
   }
-  const int begin = std::max(first_centre_from(a.y), 0);
-  const int end = std::min(first_centre_from(b.y), height_);
-  if (begin >= end || first_centre_from(std::min(a.x, b.x)) >= width_) return;
-  row_begin_ = std::min(row_begin_, begin);
-  row_end_ = std::max(row_end_, end);
-  // The product is below 2^53, and a quotient of these is further from any integer than the division's rounding: the
-  // ceiling is exact.
-  const double dx = b.x - a.x, dy = b.y - a.y;
-  for (int row = begin; row < end; ++row) {
-    const double quotient = dx * (row * kGridPerPixel + kGridHalfPixel - a.y) / dy;
-    const auto whole = static_cast<int32_t>(quotient);
-    const int column = first_centre_from(a.x + whole + static_cast<int32_t>(whole < quotient));
-    if (column < width_) add_crossing(row, static_cast<uint32_t>(std::max(column, 0)), change);
-  }
+  num_edges_ = count;
+  row_begin_ = first_row;
+  row_end_ = end_row;
 }
 
-void OutlineScan::add_crossing(int row, uint32_t column, int change) {
-  uint32_t& size = row_size_[static_cast<size_t>(row)];
-  if (size == row_capacity_) grow_rows();
-  crossings_[static_cast<size_t>(row) * row_capacity_ + size++] = column << 3 | static_cast<uint32_t>(change + 4);
+void OutlineScan::add_crossings(const OutlineEdge& edge) {
+  // The product is below 2^53, and a quotient of these is further from any integer than the division's rounding: the
+  // ceiling is exact.
+  const double dx = edge.dx, dy = edge.dy;
+  int32_t below_top = edge.row_begin * kGridPerPixel + kGridHalfPixel - edge.top.y;
+  for (int row = edge.row_begin; row < edge.row_end; ++row, below_top += kGridPerPixel) {
+    const double quotient = dx * below_top / dy;
+    const auto whole = static_cast<int32_t>(quotient);
+    const int column = first_centre_from(edge.top.x + whole + static_cast<int32_t>(whole < quotient));
+    if (column >= width_) continue;
+    uint32_t& size = row_size_[static_cast<size_t>(row)];
+    if (size == row_capacity_) grow_rows();
+    crossings_[static_cast<size_t>(row) * row_capacity_ + size++] =
+        static_cast<uint32_t>(std::max(column, 0)) << 3 | static_cast<uint32_t>(edge.change + 4);
+  }
 }
 
 void OutlineScan::grow_rows() {

@@ -31,15 +31,25 @@ class OutlineScan {
 
   void find_facing(std::span<const GridPoint> points);
   void find_facing_of_seen(std::span<const GridPoint> points);
+  // An edge of the outline that crosses rows [row_begin, row_end) of the raster, from its upper end downwards.
+  struct OutlineEdge {
+    GridPoint top;
+    int32_t dx, dy;
+    int row_begin, row_end;
+    int change;
+  };
+
   void find_outline();
-  void add_edge(GridPoint a, GridPoint b, int change);
-  void add_crossing(int row, uint32_t column, int change);
+  void orient_outline(std::span<const GridPoint> points);
+  void add_crossings(const OutlineEdge& edge);
   void grow_rows();
 
   const EdgeTopology* topology_;
   std::vector<int8_t> facing_;      // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
   std::vector<uint32_t> outline_;   // [edges] the first num_outline_ are edges whose two faces differ
   size_t num_outline_ = 0;
+  std::vector<OutlineEdge> edges_;  // [edges] the first num_edges_ cross a row
+  size_t num_edges_ = 0;
   int width_ = 0, height_ = 0;
   int row_begin_ = 0, row_end_ = 0;  // rows with crossings
   uint32_t row_capacity_ = 32;

@@ -156,14 +156,16 @@ bool ProjectedSkin::leave_out_unseen(Scratch& scratch) const {
 void ProjectedSkin::round(const Window& window, Scratch& scratch) const {
   const GridAxis x_axis(window.x0, window.scale_x), y_axis(window.y0, window.scale_y);
   scratch.points.resize(num_slots());
-  GridPoint* const points = scratch.points.data();
-  const float* const x = scratch.x[0].data();
-  const float* const y = scratch.y[0].data();
-  const size_t count = num_slots();
-  for (size_t i = 0; i < count; ++i) points[i] = {x_axis.round(x[i]), y_axis.round(y[i])};
+  GridPoint* point = scratch.points.data();
+  for (size_t c = 0; c < chunks_.size(); ++c) {
+    const Int4 x = x_axis.round(scratch.x[c]), y = y_axis.round(scratch.y[c]);
+    for (int lane = 0; lane < 4; ++lane) *point++ = {x[lane], y[lane]};
+  }
   if (!scratch.some_unseen) return;
-  for (size_t i = 0; i < count; ++i) {
-    if (std::isnan(x[i])) points[i] = kUnseenPoint;
+  for (size_t slot = 0; slot < num_slots(); ++slot) {
+    if (std::isnan(scratch.x[slot / kLanes][static_cast<Eigen::Index>(slot % kLanes)])) {
+      scratch.points[slot] = kUnseenPoint;
+    }
   }
 }
 

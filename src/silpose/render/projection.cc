@@ -34,11 +34,19 @@ std::optional<PixelBounds> pixel_bounds(std::span<const Eigen::Vector2f> pixels)
 bool round_to_grid(std::span<const Eigen::Vector2f> pixels, const Window& window, std::span<GridPoint> points) {
   const GridAxis x_axis(window.x0, window.scale_x), y_axis(window.y0, window.scale_y);
   bool some_unseen = false;
-  for (size_t i = 0; i < pixels.size(); ++i) {
-    points[i] = {x_axis.round(pixels[i].x()), y_axis.round(pixels[i].y())};
-    if (std::isnan(pixels[i].x()) || std::isnan(pixels[i].y())) {
-      points[i] = kUnseenPoint;
-      some_unseen = true;
+  for (size_t first = 0; first < pixels.size(); first += 4) {
+    const size_t count = std::min<size_t>(4, pixels.size() - first);
+    Eigen::Array4f x = Eigen::Array4f::Zero(), y = x;
+    for (size_t i = 0; i < count; ++i) {
+      x[static_cast<Eigen::Index>(i)] = pixels[first + i].x();
+      y[static_cast<Eigen::Index>(i)] = pixels[first + i].y();
+    }
+    const Int4 grid_x = x_axis.round(x), grid_y = y_axis.round(y);
+    for (size_t i = 0; i < count; ++i) {
+      const auto lane = static_cast<Eigen::Index>(i);
+      const bool unseen = std::isnan(x[lane]) || std::isnan(y[lane]);
+      points[first + i] = unseen ? kUnseenPoint : GridPoint{grid_x[lane], grid_y[lane]};
+      some_unseen |= unseen;
     }
   }
   return some_unseen;

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <span>
 
@@ -26,20 +27,25 @@ inline constexpr GridPoint kUnseenPoint{std::numeric_limits<int32_t>::min(), std
 // The first raster row or column whose centre lies at or beyond a grid coordinate.
 inline int32_t first_centre_from(int32_t grid) { return (grid + kGridPerPixel - 1 - kGridHalfPixel) >> kGridBits; }
 
-// Image coordinate to grid: nearest, halves away from zero, clamped to the limit; NaN goes to the lower limit.
+// Four numbers that the compiler keeps in one register; Eigen does not convert between float and int in registers.
+using Float4 = float __attribute__((vector_size(16)));
+using Int4 = int32_t __attribute__((vector_size(16)));
+
+// Image coordinates to the grid: nearest, halves away from zero, clamped to the limit. Of NaN nothing is promised.
 struct GridAxis {
   GridAxis(double origin, double scale)
       : slope(static_cast<float>(scale * kGridPerPixel)), offset(static_cast<float>(-origin * scale * kGridPerPixel)) {}
   float slope, offset;
 
-  [[nodiscard]] int32_t round(float pixel) const {
+  // Twice the rest, truncated, is the 1 or -1 by which truncation has to be put right.
+  [[nodiscard]] Int4 round(const Eigen::Array4f& pixel) const {
     constexpr auto kLimit = static_cast<float>(kGridLimit);
-    float grid = pixel * slope + offset;
-    grid = grid > -kLimit ? grid : -kLimit;
-    grid = grid < kLimit ? grid : kLimit;
-    const auto whole = static_cast<int32_t>(grid);
-    const float rest = grid - static_cast<float>(whole);
-    return whole + static_cast<int32_t>(rest >= 0.5f) - static_cast<int32_t>(rest <= -0.5f);
+    const Eigen::Array4f clamped = (pixel * slope + offset).max(-kLimit).min(kLimit);
+    Float4 grid;
+    std::memcpy(&grid, clamped.data(), sizeof grid);
+    const Int4 whole = __builtin_convertvector(grid, Int4);
+    const Float4 rest = grid - __builtin_convertvector(whole, Float4);
+    return whole + __builtin_convertvector(rest + rest, Int4);
   }
 };
 
