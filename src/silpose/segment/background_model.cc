@@ -165,7 +165,7 @@ BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSa
   cv::Mat slope_x, slope_y;
   cv::Sobel(median, slope_x, CV_32F, 1, 0, 3, 1.0 / 8);
   cv::Sobel(median, slope_y, CV_32F, 0, 1, 3, 1.0 / 8);
-  const cv::Mat slope = 0.25 * (cv::abs(slope_x) + cv::abs(slope_y));
+  const cv::Mat slope = 0.4 * (cv::abs(slope_x) + cv::abs(slope_y));
   noise = cv::min(noise, 3 * cv::Scalar(kPlateFloor[0], kPlateFloor[1], kPlateFloor[2])) + slope;
   steady_noise(model.noise, kPlateFloor);
   return model;

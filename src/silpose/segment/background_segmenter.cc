@@ -51,7 +51,8 @@ class OnlineSegmenter : public Segmenter {
     size_ = cv::Size(image.width(), image.height());
     const cv::Mat view(size_, CV_8UC3, const_cast<uint8_t*>(image.pixels().data()));
     cv::Mat labels;
-    subtractor_->apply(view, labels);
+    // Left to themselves the mixtures learn so fast at first that a subject who comes then becomes background.
+    subtractor_->apply(view, labels, num_seen_ < kNumLearned ? -1 : 1.0 / kHistory);
     labels = labels == 255;  // 127 is shadow
     cv::medianBlur(labels, labels, 5);
     ByteImage bytes(image.width(), image.height());

@@ -8,6 +8,8 @@
 namespace silpose {
 namespace {
 
+constexpr double kMinBlob = 0.0005;  // of the picture
+
 cv::Mat to_mat(const Mask& mask) {
   cv::Mat mat(mask.height(), mask.width(), CV_8U);
   for (int y = 0; y < mask.height(); ++y) {
@@ -43,7 +45,7 @@ cv::Mat disc(int radius) {
 
 void CleanUpOptions::check() const {
   silpose::check(!region || !region->empty(), "region: width and height must be positive");
-  silpose::check(min_blob_px >= 0, "min_blob_px is {}", min_blob_px);
+  silpose::check(min_blob_px >= -1, "min_blob_px is {}", min_blob_px);
   silpose::check(join_gap >= 0 && join_gap <= 0.1, "join_gap is {}", join_gap);
   silpose::check(max_hole >= 0 && max_hole <= 1, "max_hole is {}", max_hole);
   silpose::check(std::abs(grow_px) <= 200, "grow_px is {}", grow_px);
@@ -105,9 +107,13 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
 
   // Labelled on a copy that is grown by half of the gap; counted in pixels of the mask itself.
   const cv::Mat mat = to_mat(cut);
-  cv::Mat joined = mat;
+  cv::Mat joined;
   const int reach = static_cast<int>(std::lround(0.5 * options.join_gap * cut.height()));
-  if (reach > 0) cv::dilate(mat, joined, disc(reach));
+  if (reach > 0) {
+    cv::dilate(mat, joined, disc(reach));
+  } else {
+    joined = mat;
+  }
   cv::Mat labels;
   const auto count = static_cast<size_t>(cv::connectedComponents(joined, labels, 8, CV_32S));
   std::vector<int64_t> area(count, 0), inside(count, 0);
@@ -123,9 +129,10 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
       if (in_region) ++inside[label];
     }
   }
+  const double min_area = options.min_blob_px >= 0 ? options.min_blob_px : kMinBlob * cut.width() * cut.height();
   size_t best = 0;
   for (size_t label = 1; label < count; ++label) {
-    if (area[label] < options.min_blob_px || 2 * inside[label] < area[label]) continue;
+    if (static_cast<double>(area[label]) < min_area || 2 * inside[label] < area[label]) continue;
     if (best == 0 || area[label] > area[best]) best = label;
   }
   if (best == 0) return nothing;

@@ -1,5 +1,6 @@
 #include "silpose/segment/given_masks.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "silpose/segment/trust_monitor.h"
@@ -24,6 +25,7 @@ class GivenMasks : public Segmenter {
       : masks_(std::move(masks)), clean_up_(clean_up) {
     is_cleaned_ = clean_up.region || clean_up.garbage_mask || clean_up.grow_px != 0 || clean_up.min_blob_px > 0;
     clean_up_.max_hole = 0;  // whoever made the masks meant their holes
+    clean_up_.min_blob_px = std::max(clean_up_.min_blob_px, 0);
   }
 
   Result<Segmentation> segment(const ByteImage& image, int64_t index) override {

@@ -1,0 +1,113 @@
+#include "silpose/segment/clean_up.h"
+
+#include <gtest/gtest.h>
+
+namespace silpose {
+namespace {
+
+Mask cleaned(const char* text, CleanUpOptions options) {
+  options.join_gap = 0;
+  return choose_blob(mask_from_text(text), options);
+}
+
+const char* const kTwoBlobs =
+    "##......\n"
+    "##...###\n"
+    "#....###\n"
+    ".....###\n"
+    "........\n";
+
+TEST(ChooseBlob, TakesTheLargest) {
+  EXPECT_EQ(text_from_mask(cleaned(kTwoBlobs, {})), text_from_mask(mask_from_text("........\n"
+                                                                                  ".....###\n"
+                                                                                  ".....###\n"
+                                                                                  ".....###\n"
+                                                                                  "........\n")));
+}
+
+TEST(ChooseBlob, RegionSelectsAndDoesNotCut) {
+  // 3 of the 5 pixels of the small blob lie inside, and all 5 are kept; of the large one none does.
+  const Mask chosen = cleaned(kTwoBlobs, {.region = Box{0, 0, 3, 2}});
+  EXPECT_EQ(chosen.count(), 5);
+  EXPECT_TRUE(chosen.get(0, 2)) << "outside the region, and still part of the blob";
+}
+
+TEST(ChooseBlob, HalfInsideCountsLessDoesNot) {
+  EXPECT_EQ(cleaned("####", {.region = Box{0, 0, 2, 1}}).count(), 4);
+  EXPECT_EQ(cleaned("####", {.region = Box{0, 0, 1, 1}}).count(), 0);
+  EXPECT_EQ(cleaned("####", {.region = Box{-5, -5, 7, 9}}).count(), 4) << "regions may reach over the border";
+}
+
+TEST(ChooseBlob, SmallBlobsDoNotCount) {
+  EXPECT_EQ(cleaned(kTwoBlobs, {.min_blob_px = 9}).count(), 9);
+  EXPECT_EQ(cleaned(kTwoBlobs, {.min_blob_px = 10}).count(), 0);
+}
+
+TEST(ChooseBlob, GarbageMaskCutsBeforeBlobsAreCounted) {
+  CleanUpOptions options;
+  options.garbage_mask = mask_from_text(
+      "########\n"
+      "######..\n"
+      "######..\n"
+      "######..\n"
+      "########\n");
+  EXPECT_EQ(cleaned(kTwoBlobs, options).count(), 5);
+  options.garbage_mask = Mask(3, 3);
+  EXPECT_THROW((void)cleaned(kTwoBlobs, options), std::invalid_argument);
+}
+
+TEST(ChooseBlob, DiagonalNeighboursAreOneBlob) { EXPECT_EQ(cleaned("#..\n.#.\n..#", {}).count(), 3); }
+
+TEST(ChooseBlob, SmallGapsDoNotPartABlobAndStayOpen) {
+  Mask mask(200, 200);
+  for (int y = 20; y < 180; ++y) {
+    if (y == 90 || y == 91) continue;
+    for (int x = 80; x < 120; ++x) mask.set(x, y);
+  }
+  const Mask joined = choose_blob(mask, {.join_gap = 0.02});
+  EXPECT_EQ(joined, mask);
+  EXPECT_EQ(choose_blob(mask, {.join_gap = 0}).count(), 40 * 88);
+}
+
+TEST(ChooseBlob, NothingGivesNothing) {
+  EXPECT_EQ(choose_blob(Mask(30, 20), {}), Mask(30, 20));
+  EXPECT_EQ(choose_blob(Mask(), {}).count(), 0);
+}
+
+TEST(ChooseBlob, RefusesImpossibleOptions) {
+  EXPECT_THROW((void)choose_blob(Mask(3, 3), {.region = Box{0, 0, 0, 4}}), std::invalid_argument);
+  EXPECT_THROW((void)choose_blob(Mask(3, 3), {.min_blob_px = -2}), std::invalid_argument);
+  EXPECT_THROW((void)choose_blob(Mask(3, 3), {.join_gap = 2}), std::invalid_argument);
+}
+
+TEST(FillHoles, FillsSmallOnesOnly) {
+  const Mask mask = mask_from_text(
+      "..........\n"
+      ".########.\n"
+      ".#.##...#.\n"
+      ".####...#.\n"
+      ".########.\n");
+  const Mask filled = fill_holes(mask, 5);
+  EXPECT_TRUE(filled.get(2, 2));
+  EXPECT_FALSE(filled.get(5, 2));
+  EXPECT_EQ(fill_holes(mask, 6).count(), 8 * 4);
+  EXPECT_EQ(fill_holes(mask, 0), mask);
+}
+
+TEST(FillHoles, ABayIsNotAHole) {
+  const Mask bay = mask_from_text("###\n#..\n###");
+  EXPECT_EQ(fill_holes(bay, 100), bay);
+  const Mask diagonal = mask_from_text("###\n#.#\n##.");  // 4-connected background: the corner does not leak
+  EXPECT_TRUE(fill_holes(diagonal, 1).get(1, 1));
+}
+
+TEST(Grow, ByADiscBothWays) {
+  const Mask dot = mask_from_text(".....\n.....\n..#..\n.....\n.....");
+  EXPECT_EQ(grow(dot, 1), mask_from_text(".....\n..#..\n.###.\n..#..\n....."));
+  EXPECT_EQ(grow(grow(dot, 2), -2), dot);
+  EXPECT_EQ(grow(dot, 0), dot);
+  EXPECT_EQ(grow(mask_from_text("###\n###\n###"), -1).count(), 9) << "the border does not shrink it";
+}
+
+}  // namespace
+}  // namespace silpose
