@@ -1,0 +1,108 @@
+#include "silpose/recording/track_recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "silpose/base/check.h"
+
+namespace silpose {
+namespace {
+
+double seconds(const RecordedStep& step) { return static_cast<double>(step.time_ns) * 1e-9; }
+
+template <class Values>
+PoseTable table_of(const TrackRecording& recording, bool has_scores, const Values& values) {
+  PoseTable table;
+  table.has_scores = has_scores;
+  for (const RecordedStep& step : recording.steps) {
+    if (step.pose.empty()) continue;
+    table.rows.push_back({.frame = step.frame_idx,
+                          .time_s = seconds(step),
+                          .values = values(step),
+                          .visual_accuracy = step.visual_accuracy,
+                          .effective_sample_size = step.effective_sample_size});
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string_view state_name(StepReport::State state) {
+  switch (state) {
+    case StepReport::State::kWaiting: return "waiting";
+    case StepReport::State::kInitialised: return "initialised";
+    case StepReport::State::kTracked: return "tracked";
+    case StepReport::State::kCoasted: return "coasted";
+  }
+  return "waiting";
+}
+
+PoseTable pose_table(const TrackRecording& recording) {
+  return table_of(recording, true, [](const RecordedStep& step) { return step.pose; });
+}
+
+PoseTable normalised_pose_table(const TrackRecording& recording, const Skeleton& skeleton) {
+  return table_of(recording, true, [&](const RecordedStep& step) { return skeleton.normalise(step.pose); });
+}
+
+PoseTable spread_table(const TrackRecording& recording) {
+  return table_of(recording, false, [](const RecordedStep& step) { return step.spread; });
+}
+
+JointTable joint_table(const TrackRecording& recording, const BodyModel& body, const PinholeCamera& camera) {
+  const std::vector<std::string> names = landmark_names(body);
+  const auto num_joints = static_cast<size_t>(body.skeleton.num_joints());
+  JointTable table;
+  table.has_spread = true;
+  for (const RecordedStep& step : recording.steps) {
+    if (step.pose.empty()) continue;
+    const std::vector<Eigen::Vector3d> positions = landmark_positions(body, step.pose);
+    check(step.landmark_spread.size() == positions.size(), "joint_table: {} spreads for {} landmarks",
+          step.landmark_spread.size(), positions.size());
+    for (size_t i = 0; i < positions.size(); ++i) {
+      if (i >= num_joints && names[i] != "head_top") continue;
+      constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+      table.rows.push_back({.frame = step.frame_idx,
+                            .time_s = seconds(step),
+                            .joint = names[i],
+                            .x_in_world = positions[i],
+                            .pixel = camera.project(positions[i]).value_or(Eigen::Vector2d(kUnseen, kUnseen)),
+                            .sd = step.landmark_spread[i]});
+    }
+  }
+  return table;
+}
+
+std::vector<std::vector<double>> even_poses(const TrackRecording& recording) {
+  std::vector<std::vector<double>> poses;
+  int64_t next_frame = 0;
+  for (const RecordedStep& step : recording.steps) {
+    if (step.pose.empty()) continue;
+    for (; !poses.empty() && next_frame < step.frame_idx; ++next_frame) poses.push_back(poses.back());
+    poses.push_back(step.pose);
+    next_frame = step.frame_idx + 1;
+  }
+  return poses;
+}
+
+RecordingSummary summarise(const TrackRecording& recording) {
+  RecordingSummary summary;
+  summary.frames = static_cast<int64_t>(recording.steps.size());
+  double sum = 0, sum_of_squares = 0;
+  for (const RecordedStep& step : recording.steps) {
+    if (step.state == StepReport::State::kCoasted) ++summary.frames_coasted;
+    if (step.state != StepReport::State::kTracked && step.state != StepReport::State::kInitialised) continue;
+    ++summary.frames_tracked;
+    sum += step.visual_accuracy;
+    sum_of_squares += step.visual_accuracy * step.visual_accuracy;
+  }
+  const auto count = static_cast<double>(summary.frames_tracked);
+  summary.visual_accuracy_mean = sum / count;  // 0 / 0 is NaN
+  summary.visual_accuracy_std =
+      std::sqrt(std::max(0.0, sum_of_squares / count - summary.visual_accuracy_mean * summary.visual_accuracy_mean));
+  if (summary.frames_tracked == 0) summary.visual_accuracy_std = summary.visual_accuracy_mean;
+  return summary;
+}
+
+}  // namespace silpose

@@ -1,0 +1,54 @@
+// TrackRecording: what a tracker said of a clip, frame by frame, as plain values, and the tables that exchange writes.
+// The recording is the result: files and reports are made of it, never of the tracker.
+// Threads: values and pure functions.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "silpose/body/body_model.h"
+#include "silpose/exchange/tables.h"
+#include "silpose/geometry/camera.h"
+#include "silpose/track/step_report.h"
+
+namespace silpose {
+
+struct RecordedStep {
+  int64_t frame_idx = 0;
+  int64_t time_ns = 0;
+  StepReport::State state = StepReport::State::kWaiting;
+  std::vector<double> pose, mode, spread;        // [D] metres, radians; empty while waiting
+  std::vector<Eigen::Vector3d> landmark_spread;  // [J + E] metres; empty while waiting
+  double visual_accuracy = 0, effective_sample_size = 0;
+};
+
+struct TrackRecording {
+  std::string skeleton;             // its name
+  std::vector<RecordedStep> steps;  // [T] in time order
+};
+
+// "waiting", "initialised", "tracked", "coasted".
+std::string_view state_name(StepReport::State state);
+
+// Tables of the steps that have a pose. The spread table holds standard deviations in the poses' own units.
+PoseTable pose_table(const TrackRecording& recording);
+PoseTable normalised_pose_table(const TrackRecording& recording, const Skeleton& skeleton);
+PoseTable spread_table(const TrackRecording& recording);
+// Every joint and head_top, with its pixel in `camera` and its spread.
+JointTable joint_table(const TrackRecording& recording, const BodyModel& body, const PinholeCamera& camera);
+
+// Poses [T][D] at an even rate, as motion files want them: one a frame from the first step that has a pose; a frame
+// without one repeats the pose before.
+std::vector<std::vector<double>> even_poses(const TrackRecording& recording);
+
+// Counts and means over a recording.
+struct RecordingSummary {
+  int64_t frames = 0, frames_tracked = 0, frames_coasted = 0;  // tracked: compared with a silhouette
+  double visual_accuracy_mean = 0, visual_accuracy_std = 0;    // over tracked frames; NaN when there is none
+};
+RecordingSummary summarise(const TrackRecording& recording);
+
+}  // namespace silpose
