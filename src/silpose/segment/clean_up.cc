@@ -31,6 +31,26 @@ Mask from_mat(const cv::Mat& mat) {
   return mask;
 }
 
+// Where a set pixel lies within `radius`.
+cv::Mat within(const cv::Mat& mat, int radius) {
+  cv::Mat distance;
+  cv::distanceTransform(mat == 0, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  return distance <= radius;
+}
+
+// Grown and shrunk again: gaps of up to twice the radius are closed. The picture's border is no edge.
+Mask close_gaps(const Mask& mask, int radius) {
+  const Box box = mask.bounding_box();
+  if (box.empty() || radius <= 0) return mask;
+  const int x0 = std::max(box.x - radius - 1, 0), x1 = std::min(box.x + box.width + radius + 1, mask.width());
+  const int y0 = std::max(box.y - radius - 1, 0), y1 = std::min(box.y + box.height + radius + 1, mask.height());
+  cv::Mat mat = to_mat(mask);
+  cv::Mat around = mat(cv::Rect(x0, y0, x1 - x0, y1 - y0));
+  const cv::Mat closed = within(within(around, radius) == 0, radius) == 0;
+  closed.copyTo(around);
+  return from_mat(mat);
+}
+
 cv::Mat disc(int radius) {
   cv::Mat element(2 * radius + 1, 2 * radius + 1, CV_8U);
   for (int y = -radius; y <= radius; ++y) {
@@ -110,7 +130,7 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
   cv::Mat joined;
   const int reach = static_cast<int>(std::lround(0.5 * options.join_gap * cut.height()));
   if (reach > 0) {
-    cv::dilate(mat, joined, disc(reach));
+    joined = within(mat, reach);
   } else {
     joined = mat;
   }
@@ -144,7 +164,7 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
     }
   }
   const auto max_hole = static_cast<int64_t>(options.max_hole * static_cast<double>(area[best]));
-  return grow(fill_holes(blob, max_hole), options.grow_px);
+  return grow(fill_holes(close_gaps(blob, reach), max_hole), options.grow_px);
 }
 
 }  // namespace silpose

@@ -15,7 +15,7 @@ struct CleanUpOptions {
   std::optional<Box> region;         // a blob counts only if at least half of its pixels lie inside
   std::optional<Mask> garbage_mask;  // what is not set is cut away, first
   int min_blob_px = -1;              // area below which a blob does not count; -1: 0.05 % of the picture
-  double join_gap = 0.008;           // of the picture's height: gaps that do not part blobs
+  double join_gap = 0.008;           // of the picture's height: gaps that do not part blobs, and are closed
   double max_hole = 0.005;           // of the blob's area: holes up to this are filled
   int grow_px = 0;                   // last: by so many pixels; negative shrinks
 

@@ -24,7 +24,7 @@ class GivenMasks : public Segmenter {
   GivenMasks(std::optional<Video> masks, const CleanUpOptions& clean_up)
       : masks_(std::move(masks)), clean_up_(clean_up) {
     is_cleaned_ = clean_up.region || clean_up.garbage_mask || clean_up.grow_px != 0 || clean_up.min_blob_px > 0;
-    clean_up_.max_hole = 0;  // whoever made the masks meant their holes
+    clean_up_.max_hole = clean_up_.join_gap = 0;  // whoever made the masks meant their holes and gaps
     clean_up_.min_blob_px = std::max(clean_up_.min_blob_px, 0);
   }
 
