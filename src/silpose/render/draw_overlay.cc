@@ -1,0 +1,86 @@
+#include "silpose/render/draw_overlay.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string_view>
+#include <vector>
+
+#include "silpose/base/check.h"
+#include "silpose/render/silhouette.h"
+
+namespace silpose {
+namespace {
+
+constexpr int kFractionBits = 4;  // of the coordinates that OpenCV draws with
+
+cv::Mat view_of(ByteImage& picture) {
+  check(picture.channels() == 3, "draw_overlay: picture of {} channels", picture.channels());
+  return {picture.height(), picture.width(), CV_8UC3, picture.pixels().data()};
+}
+
+cv::Scalar scalar_of(Colour colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
+
+// Lines and dots that keep their weight whatever the picture's size.
+int line_width(const ByteImage& picture) { return std::max(1, static_cast<int>(std::lround(picture.height() / 360.0))); }
+
+cv::Point fixed_point(const Eigen::Vector2d& pixel) {
+  static constexpr double kFar = 16384;  // what lies further out is not seen anyway, and would overflow
+  const auto fixed = [](double value) {
+    return static_cast<int>(std::lround((std::clamp(value, -kFar, kFar) - 0.5) * (1 << kFractionBits)));
+  };
+  return {fixed(pixel.x()), fixed(pixel.y())};
+}
+
+Colour colour_of(std::string_view landmark) {
+  if (landmark.starts_with("left_")) return {255, 150, 40};
+  if (landmark.starts_with("right_")) return {30, 140, 255};
+  return {245, 245, 245};
+}
+
+}  // namespace
+
+void draw_outline(ByteImage& picture, const Mask& mask, Colour colour) {
+  check(mask.width() == picture.width() && mask.height() == picture.height(),
+        "draw_outline: mask of {}x{} on a picture of {}x{}", mask.width(), mask.height(), picture.width(),
+        picture.height());
+  cv::Mat canvas = view_of(picture);
+  ByteImage bytes = image_from_mask(mask);
+  const cv::Mat filled(mask.height(), mask.width(), CV_8UC1, bytes.pixels().data());
+  std::vector<std::vector<cv::Point>> contours;
+  cv::findContours(filled, contours, cv::RETR_CCOMP, cv::CHAIN_APPROX_NONE);
+  cv::polylines(canvas, contours, true, scalar_of(colour), line_width(picture), cv::LINE_AA);
+}
+
+void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {
+  cv::Mat canvas = view_of(picture);
+  const std::vector<std::string> names = landmark_names(body);
+  const std::vector<Eigen::Vector3d> positions = landmark_positions(body, pose);
+  const auto joints = body.skeleton.joints();
+  const auto parent_of = [&](size_t landmark) {
+    return landmark < joints.size() ? joints[landmark].parent_idx : body.end_points[landmark - joints.size()].joint_idx;
+  };
+  const int width = line_width(picture);
+  // Dark first and wider, so that bones show on any picture.
+  for (const bool is_edge : {true, false}) {
+    for (size_t i = 0; i < positions.size(); ++i) {
+      const int parent = parent_of(i);
+      if (parent < 0) continue;
+      const auto from = camera.project(positions[static_cast<size_t>(parent)]), to = camera.project(positions[i]);
+      if (!from || !to) continue;
+      const cv::Scalar colour = is_edge ? cv::Scalar(20, 20, 20) : scalar_of(colour_of(names[i]));
+      const int extra = is_edge ? 2 : 0;
+      cv::line(canvas, fixed_point(*from), fixed_point(*to), colour, width + extra, cv::LINE_AA, kFractionBits);
+      cv::circle(canvas, fixed_point(*to), (2 * width + extra) << (kFractionBits - 1), colour, cv::FILLED, cv::LINE_AA,
+                 kFractionBits);
+    }
+  }
+}
+
+void draw_overlay(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera,
+                  std::span<const double> pose) {
+  draw_outline(picture, render_silhouette(body, camera, pose));
+  draw_bones(picture, body, camera, pose);
+}
+
+}  // namespace silpose

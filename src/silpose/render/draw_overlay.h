@@ -1,0 +1,29 @@
+// Drawing on pictures what was found in them: the outline of a silhouette, and a body's bones. 8-bit B, G, R.
+// Anti-aliased; line widths follow the picture's height.
+// Threads: pure functions.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "silpose/body/body_model.h"
+#include "silpose/geometry/camera.h"
+#include "silpose/image/image.h"
+#include "silpose/image/mask.h"
+
+namespace silpose {
+
+using Colour = std::array<uint8_t, 3>;  // B, G, R
+
+// The borders of a mask, outer ones and holes. REQUIRES: picture of 3 channels, of the mask's size.
+void draw_outline(ByteImage& picture, const Mask& mask, Colour colour = {80, 255, 80});
+
+// The bones of a posed body as lines between landmarks: left ones blue, right ones orange, the others white.
+// Bones with an end behind the camera are left out.
+void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose);
+
+// Both: the outline of the body's silhouette and its bones. REQUIRES: picture of the camera's size.
+void draw_overlay(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose);
+
+}  // namespace silpose
