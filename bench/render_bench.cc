@@ -19,22 +19,25 @@ namespace {
 constexpr int kSize = 128;
 
 // Standing poses that use a third of every angle's range.
-std::vector<double> random_poses(const Skeleton& skeleton, size_t count) {
+std::vector<double> random_poses(const BodyModel& body, size_t count) {
   Rng rng(1);
+  const std::vector<double> standing = standing_pose(body);
+  const auto dofs = body.skeleton.dofs();
   std::vector<double> poses;
   for (size_t n = 0; n < count; ++n) {
-    for (const Dof& dof : skeleton.dofs()) {
-      poses.push_back(dof.is_translation ? rng.uniform(-0.1, 0.1) : rng.uniform(dof.lower, dof.upper) / 3);
+    for (size_t d = 0; d < dofs.size(); ++d) {
+      const double range = dofs[d].is_translation ? 0.3 : (dofs[d].upper - dofs[d].lower) / 3;
+      poses.push_back(standing[d] + range * rng.uniform(-0.5, 0.5));
     }
   }
   return poses;
 }
 
 Figure likelihood(std::shared_ptr<const BodyModel> body, size_t num_poses) {
-  const PinholeCamera camera = default_camera(640, 480, 4.0);
-  const Window window{.x0 = 80, .scale_x = kSize / 480.0, .scale_y = kSize / 480.0, .width = kSize, .height = kSize};
+  const PinholeCamera camera = default_camera(640, 480);
+  const Window window{.x0 = 160, .y0 = 130, .scale_x = kSize / 320.0, .scale_y = kSize / 320.0, .width = kSize, .height = kSize};
   const auto num_dofs = static_cast<size_t>(body->skeleton.num_dofs());
-  const std::vector<double> poses = random_poses(body->skeleton, num_poses + 1);
+  const std::vector<double> poses = random_poses(*body, num_poses + 1);
   const auto pose = [&](size_t n) { return std::span(poses).subspan(n * num_dofs, num_dofs); };
   const auto draw = [&](size_t n, Mask& mask) {
     const auto vertices = skin_vertices(*body, pose(n));

@@ -9,7 +9,8 @@ namespace silpose {
 namespace {
 
 // On x86-64 each kernel is built for the baseline and for processors with POPCNT or AVX2; the loader picks.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define SILPOSE_COUNTING_KERNEL __attribute__((target_clones("default", "popcnt", "avx2")))
 #else
 #define SILPOSE_COUNTING_KERNEL

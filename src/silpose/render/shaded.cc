@@ -194,7 +194,7 @@ std::vector<Eigen::Vector3f> clothing_colours(const BodyModel& body) {
     const Eigen::Vector3d x_in_head =
         body.joint_from_rest[static_cast<size_t>(*head)] * body.rest.vertices[v].cast<double>();
     const double size = body.height_m > 0 ? body.height_m / 1.7 : 1;
-    if (x_in_head.y() > (0.15 + 0.9 * std::max(0.0, x_in_head.z())) * size || x_in_head.z() < -0.03 * size) {
+    if (x_in_head.y() > (0.12 + 0.7 * std::max(0.0, x_in_head.z())) * size || x_in_head.z() < -0.03 * size) {
       colours[v] = {0.12f, 0.16f, 0.22f};
     }
   }
