@@ -270,7 +270,9 @@ Result<BodyModel> load_body(const std::filesystem::path& path) {
   if (version != kVersion) return error("{}: body file of version {}, not {}", path.string(), version, kVersion);
   bytes.remove_prefix(kHeaderBytes);
   if (bytes.size() < size) return error("{}: truncated", path.string());
-  if (bytes.size() > size || checksum(bytes) != expected_checksum) return error("{}: damaged (checksum)", path.string());
+  if (bytes.size() > size || checksum(bytes) != expected_checksum) {
+    return error("{}: damaged (checksum)", path.string());
+  }
   try {
     Reader in(bytes);
     return get_body(in);

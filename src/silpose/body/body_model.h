@@ -33,7 +33,7 @@ struct BodyModel {
   SkinWeights skin;
   std::vector<Rigid3> joint_from_rest;       // [J]
   struct EndPoint { std::string name; int joint_idx; Eigen::Vector3d offset_in_joint; };
-  std::vector<EndPoint> end_points;          // fixed to a joint: head_top, toes, finger tips
+  std::vector<EndPoint> end_points;          // fixed to a joint; human: head_top, {right,left}_toe_tip, _finger_tip
   double height_m = 0, weight_kg = 0;        // stature and mass of the rest mesh
   std::map<std::string, std::string> facts;  // how it was built: sliders, source data, its hash
 };
@@ -51,8 +51,8 @@ void skin_vertices(const BodyModel& body, std::span<const double> pose, std::spa
 // translation root_ty; otherwise zeros. [D]
 [[nodiscard]] std::vector<double> standing_pose(const BodyModel& body);
 
-// The same body with about `num_vertices` vertices: still closed, vertices kept where they were, outline kept (the human
-// at 2,000 vertices: 0.6 mm off on average). Stature and mass stay those of the whole mesh.
+// The same body with about `num_vertices` vertices: still closed, vertices kept where they were, outline kept (the
+// human at 2,000 vertices: 0.6 mm off on average). Stature and mass stay those of the whole mesh.
 // Source: quadric error metric (garland1997), by meshoptimizer.
 // Errors: throws std::invalid_argument when asked for fewer than 100.
 [[nodiscard]] BodyModel level_of_detail(const BodyModel& body, int num_vertices);

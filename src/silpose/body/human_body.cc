@@ -10,7 +10,7 @@
 namespace silpose {
 namespace {
 
-// Centres of rotation, by joint (right side; the left one's cube is "joint-l-..."): the zero-DOF hip shares the thigh's.
+// Centres of rotation, by joint (right side; left ones are "joint-l-..."): the zero-DOF hip shares the thigh's.
 constexpr std::array<const char*, 12> kTrunkAndRightCubes = {
     "joint-pelvis",  "joint-spine-4", "joint-spine-2",    "joint-neck",       "joint-r-upper-leg", "joint-r-upper-leg",
     "joint-r-knee",  "joint-r-ankle", "joint-r-clavicle", "joint-r-shoulder", "joint-r-elbow",     "joint-r-hand"};
@@ -69,7 +69,8 @@ Eigen::Matrix3d align(const Eigen::Vector3d& a, const Eigen::Vector3d& a_side, c
 // By joint, the rotation from the rest pose to the zero pose: legs straight and vertical with the feet forward, arms
 // straight down, palms to the thighs. The trunk rests upright already.
 std::array<Eigen::Matrix3d, 20> zero_from_rest(const RestPose& rest, const std::array<Eigen::Vector3d, 20>& x) {
-  const Eigen::Vector3d left = Eigen::Vector3d::UnitX(), up = Eigen::Vector3d::UnitY(), forward = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d left = Eigen::Vector3d::UnitX(), up = Eigen::Vector3d::UnitY();
+  const Eigen::Vector3d forward = Eigen::Vector3d::UnitZ();
   std::array<Eigen::Matrix3d, 20> out;
   out.fill(Eigen::Matrix3d::Identity());
   for (const int side : {0, +kToLeft}) {

@@ -74,7 +74,8 @@ TEST(Human, IsOneClosedSurface) {
 
 TEST(Human, HasTheRequestedStatureAndMass) {
   for (const char* text : {"human:age=30,sex=f,height=1.62,weight=58", "human:age=70,sex=m,height=1.85,weight=90",
-                           "human:sex=0.5,height=1.70,weight=60,muscle=0.6", "human:sex=m,height=1.75,weight=50", "human:sex=f,weight=75"}) {
+                           "human:sex=0.5,height=1.70,weight=60,muscle=0.6", "human:sex=m,height=1.75,weight=50",
+                           "human:sex=f,weight=75"}) {
     const BodyModel body = human(text);
     const Phenotype wanted = parse_phenotype(text).value();
     float lowest = 9, highest = -9;
@@ -95,7 +96,9 @@ TEST(Human, UnsetStatureAndMassAreAverage) {
 }
 
 TEST(Human, SaysWhatCannotBeReached) {
-  const auto failure = [](const char* text) { return build_human(data(), parse_phenotype(text).value()).error().message; };
+  const auto failure = [](const char* text) {
+    return build_human(data(), parse_phenotype(text).value()).error().message;
+  };
   EXPECT_THAT(failure("human:height=2.9"), HasSubstr("height: 2.900 m"));
   EXPECT_THAT(failure("human:height=1.7,weight=200"), HasSubstr("weight: 200.0 kg"));
   EXPECT_THAT(failure("human:height=1.7,weight=20"), HasSubstr("weight: 20.0 kg"));

@@ -34,8 +34,8 @@ Skeleton::Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof>
   step_start_.reserve(joints_.size() + 1);
   for (int j = 0; j < num_joints(); ++j) {
     const Joint& joint = joints_[j];
-    check(joint.parent_idx >= -1 && joint.parent_idx < j, "skeleton '{}': parent {} of joint {} does not come before it",
-          name_, joint.parent_idx, j);
+    check(joint.parent_idx >= -1 && joint.parent_idx < j,
+          "skeleton '{}': parent {} of joint {} does not come before it", name_, joint.parent_idx, j);
     check(joint.offset_in_parent.allFinite(), "skeleton '{}': offset of joint '{}' is not finite", name_, joint.name);
     step_start_.push_back(steps_.size());
     bool rotated = false;
@@ -46,7 +46,8 @@ Skeleton::Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof>
       check(std::abs(dof.axis.norm() - 1) < 1e-9, "skeleton '{}': axis of '{}' is not a unit vector", name_, dof.name);
       check(dof.lower < dof.upper && std::isfinite(dof.lower) && std::isfinite(dof.upper),
             "skeleton '{}': limits of '{}' are {} to {}", name_, dof.name, dof.lower, dof.upper);
-      check(!(dof.is_translation && rotated), "skeleton '{}': translation '{}' comes after a rotation", name_, dof.name);
+      check(!dof.is_translation || !rotated, "skeleton '{}': translation '{}' comes after a rotation", name_,
+            dof.name);
       rotated = !dof.is_translation;
       ++uses[d];
       Step step{.dof_idx = d, .is_translation = dof.is_translation};

@@ -17,9 +17,10 @@
 
 namespace silpose {
 
-// One degree of freedom: a translation along, or a rotation about, `axis`: a unit vector in the joint's own frame, whose
-// axes are the world's in the zero pose. Joint::dof_indices tells the order in which a joint's rotations are applied.
-// Translations come before (outside) all rotations of their joint: those of a root without offset are its world position.
+// One degree of freedom: a translation along, or a rotation about, `axis`: a unit vector in the joint's own frame,
+// whose axes are the world's in the zero pose. Joint::dof_indices tells the order in which a joint's rotations are
+// applied. Translations come before (outside) all rotations of their joint: those of a root without offset are its
+// world position.
 struct Dof {
   std::string name;              // column without its unit: "right_thigh_rx", "root_tx"
   int joint_idx = 0;
