@@ -16,12 +16,12 @@ namespace silpose {
 // The exponent, at most max_exponent, at which the effective sample size of likelihood^exponent is survival_rate x the
 // number of particles with any likelihood. It is max_exponent when even that keeps more alive (all alike).
 // Errors: throws std::invalid_argument for NaN or plus infinity, or a survival rate outside (0, 1].
-// Source: deutscher2005 section 3.2, by bisection.
+// Source: deutscher2005; by bisection.
 [[nodiscard]] double annealing_exponent(std::span<const double> log_likelihood, double survival_rate,
                                         double max_exponent);
 
 // What the deviation of a layer's noise is multiplied by, layer counted from 0: variance falls by the survival rate a
-// layer. Source: deutscher2000 eq. 11.
+// layer. Source: deutscher2000.
 [[nodiscard]] double annealing_noise_scale(int layer, double survival_rate);
 
 // Children [M, D] of pairs of parents: each is its first parent with every block of columns replaced, with probability
@@ -29,7 +29,7 @@ namespace silpose {
 // (seed, stream, i). When both parents are drawn by weight, every block keeps the distribution it had.
 // Shapes: parents [N, D]; first, second [M] rows of parents.
 // Errors: throws std::invalid_argument for rows or columns out of range.
-// Source: deutscher2005 section 3.4.
+// Source: deutscher2005.
 [[nodiscard]] StateBatch crossover(const StateBatch& parents, std::span<const int> first, std::span<const int> second,
                                    std::span<const std::vector<int>> blocks, double exchange, uint64_t seed,
                                    uint64_t stream);
