@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/filter/adaptive_search.h"
+#include "silpose/track/pose_estimate.h"
 
 namespace silpose {
 namespace {
@@ -35,77 +38,69 @@ Eigen::Vector2d image_from_raster(const Window& window, const Eigen::Vector2d& x
   return {window.x0 + x.x() / window.scale_x, window.y0 + x.y() / window.scale_y};
 }
 
-// Steepest ascent scaled by each DOF's own step, with a line search over whole batches; steps shrink when none gains.
-class Descent {
- public:
-  Descent(const SilhouetteLikelihood& likelihood, const Evidence& evidence, const InitialisationOptions& options)
-      : likelihood_(likelihood), evidence_(evidence), options_(options), skeleton_(likelihood.body().skeleton) {}
+// How far a pose may be off a candidate: the deviation of the prior about it, and the first step of descent. [D]
+std::vector<double> reach(const Skeleton& skeleton) {
+  std::vector<double> deviation;
+  for (const Dof& dof : skeleton.dofs()) {
+    deviation.push_back(dof.is_translation ? 0.1 : dof.is_periodic ? to_radians(15) : 0.12 * (dof.upper - dof.lower));
+  }
+  return deviation;
+}
 
-  StartingPose run(const Eigen::RowVectorXd& start) const {
-    const auto num_dofs = static_cast<Eigen::Index>(skeleton_.num_dofs());
-    Eigen::RowVectorXd pose = start;
-    double value = evaluate(pose, start)[0];
-    double shrink = 1;
-    Eigen::VectorXd steps(num_dofs);
-    for (int iteration = 0; iteration < options_.num_iterations && shrink > 0.1; ++iteration) {
-      for (Eigen::Index d = 0; d < num_dofs; ++d) {
-        steps[d] = shrink * (skeleton_.dofs()[d].is_translation ? 0.04 : to_radians(8));
+StateBatch one_state(std::span<const double> pose) {
+  return Eigen::Map<const Eigen::RowVectorXd>(pose.data(), std::ssize(pose));
+}
+
+// Gradient ascent in which every DOF has a step of its own that grows while the gradient keeps its sign and shrinks
+// when it turns: the likelihood's slopes differ by orders of magnitude between DOF. Source: igel2003 (iRprop-).
+StartingPose descend(const SilhouetteLikelihood& likelihood, const Evidence& evidence, std::span<const double> start,
+                     int num_iterations) {
+  const Skeleton& skeleton = likelihood.body().skeleton;
+  const std::vector<double> widest = reach(skeleton);
+  const size_t D = widest.size();
+  std::vector<double> pose(start.begin(), start.end()), steps(D), last_gradient(D, 0), probe(D);
+  for (size_t d = 0; d < D; ++d) steps[d] = 0.3 * widest[d];
+  StartingPose best{pose, -std::numeric_limits<double>::infinity()};
+  for (int iteration = 0; iteration < num_iterations; ++iteration) {
+    for (size_t d = 0; d < D; ++d) probe[d] = std::max(0.5 * steps[d], 0.05 * widest[d]);
+    const auto derivative = likelihood.derivative(evidence, pose, probe);
+    if (derivative.log_likelihood > best.log_likelihood) best = {pose, derivative.log_likelihood};
+    for (size_t d = 0; d < D; ++d) {
+      double gradient = derivative.gradient[static_cast<Eigen::Index>(d)];
+      if (gradient * last_gradient[d] > 0) steps[d] = std::min(1.2 * steps[d], widest[d]);
+      if (gradient * last_gradient[d] < 0) {
+        steps[d] = std::max(0.5 * steps[d], 0.01 * widest[d]);
+        gradient = 0;
       }
-      const auto derivative = likelihood_.derivative(evidence_, {pose.data(), static_cast<size_t>(num_dofs)},
-                                                     {steps.data(), static_cast<size_t>(num_dofs)});
-      Eigen::RowVectorXd direction(num_dofs);
-      for (Eigen::Index d = 0; d < num_dofs; ++d) {
-        direction[d] = (derivative.gradient[d] - pull_gradient(pose, start, d)) * steps[d] * steps[d];
-      }
-      const double length = direction.transpose().cwiseQuotient(steps).cwiseAbs().maxCoeff();
-      if (!(length > 0)) break;
-      StateBatch trials = pose.replicate(kNumTrials, 1);
-      for (Eigen::Index k = 0; k < kNumTrials; ++k) {
-        trials.row(k) += direction * (0.25 * std::pow(1.7, static_cast<double>(k)) / length);
-        skeleton_.clamp({trials.row(k).data(), static_cast<size_t>(num_dofs)});
-      }
-      const std::vector<double> values = evaluate(trials, start);
-      const auto best = std::max_element(values.begin(), values.end());
-      if (*best > value) {
-        value = *best;
-        pose = trials.row(best - values.begin());
-      } else {
-        shrink *= 0.6;
-      }
+      pose[d] += gradient > 0 ? steps[d] : gradient < 0 ? -steps[d] : 0;
+      last_gradient[d] = gradient;
     }
-    return {{pose.data(), pose.data() + num_dofs}, value};
+    skeleton.clamp(pose);
   }
+  return best;
+}
 
- private:
-  static constexpr Eigen::Index kNumTrials = 8;
+// What descent along single DOF leaves: a search that learns how they trade off.
+StartingPose polish(const SilhouetteLikelihood& likelihood, const Evidence& evidence, const StartingPose& start,
+                    const InitialisationOptions& options, uint64_t stream) {
+  const Skeleton& skeleton = likelihood.body().skeleton;
+  std::vector<double> deviation = reach(skeleton);
+  for (double& width : deviation) width *= 0.5;
+  FilterReport report;
+  const ParticleSet particles = adaptive_search(
+      {start.pose, deviation},
+      {.num_particles = options.num_particles, .num_layers = options.num_layers, .seed = options.seed}, stream,
+      [&](std::span<double> pose) { skeleton.clamp(pose); },
+      [&](const StateBatch& states, std::span<double> out) { likelihood.log_likelihood(evidence, states, out); }, report);
+  StartingPose found{pose_estimate(skeleton, particles, Estimate::kMean, deviation), 0};
+  likelihood.log_likelihood(evidence, one_state(found.pose), {&found.log_likelihood, 1});
+  return found.log_likelihood > start.log_likelihood ? found : start;
+}
 
-  double pull_scale(Eigen::Index d) const {
-    const Dof& dof = skeleton_.dofs()[d];
-    return dof.is_translation || dof.is_periodic ? 0 : 1 / (0.1 * (dof.upper - dof.lower));
-  }
-  double pull_gradient(const Eigen::RowVectorXd& pose, const Eigen::RowVectorXd& start, Eigen::Index d) const {
-    const double scale = pull_scale(d);
-    return 2 * options_.pull / static_cast<double>(pose.size()) * scale * scale * (pose[d] - start[d]);
-  }
-  std::vector<double> evaluate(const StateBatch& poses, const Eigen::RowVectorXd& start) const {
-    std::vector<double> values(static_cast<size_t>(poses.rows()));
-    likelihood_.log_likelihood(evidence_, poses, values);
-    for (Eigen::Index n = 0; n < poses.rows(); ++n) {
-      double off = 0;
-      for (Eigen::Index d = 0; d < poses.cols(); ++d) {
-        const double scaled = pull_scale(d) * (poses(n, d) - start[d]);
-        off += scaled * scaled;
-      }
-      values[static_cast<size_t>(n)] -= options_.pull * off / static_cast<double>(poses.cols());
-    }
-    return values;
-  }
-
-  const SilhouetteLikelihood& likelihood_;
-  const Evidence& evidence_;
-  const InitialisationOptions& options_;
-  const Skeleton& skeleton_;
-};
+template <class T, class Value>
+void sort_best_first(std::vector<T>& items, Value value) {
+  std::stable_sort(items.begin(), items.end(), [&](const T& a, const T& b) { return value(a) > value(b); });
+}
 
 }  // namespace
 
@@ -158,16 +153,21 @@ std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, con
   likelihood.log_likelihood(evidence, placed, values);
   std::vector<size_t> order(values.size());
   std::iota(order.begin(), order.end(), size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return values[a] > values[b]; });
+  sort_best_first(order, [&](size_t k) { return values[k]; });
   order.resize(std::min(order.size(), static_cast<size_t>(options.num_descended)));
 
   std::vector<StartingPose> starts(order.size());
-  const Descent descent(likelihood, evidence, options);
   parallel_for(order.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) starts[i] = descent.run(placed.row(static_cast<Eigen::Index>(order[i])));
+    for (size_t i = begin; i < end; ++i) {
+      const auto row = placed.row(static_cast<Eigen::Index>(order[i]));
+      starts[i] = descend(likelihood, evidence, {row.data(), static_cast<size_t>(row.size())}, options.num_iterations);
+    }
   });
-  std::stable_sort(starts.begin(), starts.end(),
-                   [](const auto& a, const auto& b) { return a.log_likelihood > b.log_likelihood; });
+  const auto fit = [](const StartingPose& start) { return start.log_likelihood; };
+  sort_best_first(starts, fit);
+  starts.resize(std::min(starts.size(), static_cast<size_t>(options.num_polished)));
+  for (size_t i = 0; i < starts.size(); ++i) starts[i] = polish(likelihood, evidence, starts[i], options, i);
+  sort_best_first(starts, fit);
   return starts;
 }
 

@@ -1,5 +1,5 @@
 // Initialisation: from one mask and a set of common poses to ranked starting poses, by placing each on the mask and
-// descending on the likelihood.
+// climbing the likelihood from there: by its derivative first, then by an adaptive search about the best.
 // Source: cormier2019 sect. 2.4.1 (gradient descent from known common poses).
 // Threads: a function without state; uses all cores.
 #pragma once
@@ -13,9 +13,12 @@
 namespace silpose {
 
 struct InitialisationOptions {
-  int num_descended = 12;     // the best of the placed candidates that are descended
-  int num_iterations = 60;    // of descent, at most
-  double pull = 0.5;          // log-likelihood lost when every joint is a tenth of its range off the candidate
+  int num_descended = 16;   // the best of the placed candidates that are descended
+  int num_iterations = 25;  // of descent
+  int num_polished = 4;     // the best of those that are searched further
+  int num_particles = 200;  // of that search, a layer
+  int num_layers = 20;
+  uint64_t seed = 1;
 };
 
 struct StartingPose {
@@ -23,7 +26,7 @@ struct StartingPose {
   double log_likelihood = 0;
 };
 
-// Starting poses, best first, one for each descended candidate. Shapes: candidates [K, D]; their root translation is
+// Starting poses, best first, at most options.num_polished. Shapes: candidates [K, D]; their root translation is
 // replaced. REQUIRES: evidence in which some camera has a say, from an image-comparing likelihood.
 std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, const Evidence& evidence,
                                      const StateBatch& candidates, const InitialisationOptions& options = {});

@@ -23,7 +23,8 @@ class SamplingFilter {
   SamplingFilter(const TrackerOptions& options, const SilhouetteLikelihood& likelihood, std::vector<bool> free_dofs,
                  uint64_t seed);
 
-  // Particles scattered about the starts by the motion model's noise of a few frames; better starts get more.
+  // Particles scattered about the starts by the motion model's noise of a few frames: half of them about the first, a
+  // quarter about the second, and so on.
   void start(std::span<const StartingPose> starts);
 
   // `held` [D]: where the DOF that do not move are now.
@@ -34,6 +35,12 @@ class SamplingFilter {
   [[nodiscard]] std::vector<double> estimate() const;  // [D]
 
  private:
+  static constexpr uint64_t kStartStream = ~uint64_t{0};
+  static constexpr uint64_t kRegenerateSeed = 0x7265;
+
+  std::vector<int> columns_where(bool moves) const;
+  std::vector<int> free_columns() const { return columns_where(true); }
+  std::vector<int> held_columns() const { return columns_where(false); }
   void hold(StateBatch& states, std::span<const double> held) const;
 
   const TrackerOptions& options_;

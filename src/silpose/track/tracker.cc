@@ -17,8 +17,6 @@ namespace {
 
 // After coasting for longer than this the subject may be anywhere: the next good mask starts over.
 constexpr double kLongestCoast_s = 1.0;
-// Starting poses that the filter gets to choose from.
-constexpr size_t kNumStarts = 4;
 
 bool any_has_a_say(std::span<const Observation> observations) {
   return std::any_of(observations.begin(), observations.end(),
@@ -69,9 +67,7 @@ struct Tracker::Impl {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
-    std::vector<StartingPose> starts = initialise(likelihood, likelihood.prepare(observations), candidates);
-    starts.resize(std::min(starts.size(), kNumStarts));
-    return starts;
+    return initialise(likelihood, likelihood.prepare(observations), candidates, {.seed = options.seed});
   }
 
   void summarise(std::span<const Observation> observations, StepReport& report) {

@@ -1,0 +1,123 @@
+#include "silpose/track/pose_filter.h"
+
+#include <algorithm>
+
+#include "silpose/track/adaptive_filter.h"
+#include "silpose/track/pose_estimate.h"
+#include "silpose/track/sampling_filter.h"
+
+namespace silpose {
+namespace {
+
+using Renderers = std::vector<std::shared_ptr<const BatchRenderer>>;
+
+constexpr int kCroppedSize = 64;  // raster pixels of the thesis' cropped silhouettes
+
+bool is_root(const Dof& dof) { return dof.joint_idx == 0; }
+
+// Which DOF a filter moves. [D]
+template <class Predicate>
+std::vector<bool> dofs_where(const Skeleton& skeleton, Predicate predicate) {
+  std::vector<bool> free;
+  for (const Dof& dof : skeleton.dofs()) free.push_back(predicate(dof));
+  return free;
+}
+
+// Root and pose in one state, compared on the whole image.
+class JointFilter final : public PoseFilter {
+ public:
+  JointFilter(const TrackerOptions& options, Renderers renderers)
+      : likelihood_(std::move(renderers), {.sharpness = *options.sharpness}),
+        filter_(options, likelihood_,
+                dofs_where(options.body->skeleton, [&](const Dof& dof) { return !options.root_fixed || !is_root(dof); }),
+                options.seed) {}
+
+  void start(std::span<const StartingPose> starts) override {
+    held_ = starts.front().pose;
+    filter_.start(starts);
+  }
+  FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
+    return filter_.step(likelihood_.prepare(observations), held_, dt_s, seconds);
+  }
+  FilterReport coast(double dt_s) override { return filter_.coast(dt_s); }
+  const ParticleSet& particles() const override { return filter_.particles(); }
+  std::vector<double> estimate() const override { return filter_.estimate(); }
+
+ private:
+  SilhouetteLikelihood likelihood_;
+  SamplingFilter filter_;
+  std::vector<double> held_;
+};
+
+// The thesis' two filters. Pose, with the root's rotation: on cropped silhouettes. Root: on the whole image, with the
+// pose just found. In this order the root answers for what is drawn, and no offset is left between the two.
+class TwoFilters final : public PoseFilter {
+ public:
+  TwoFilters(const TrackerOptions& options, const Renderers& renderers)
+      : skeleton_(options.body->skeleton),
+        root_fixed_(options.root_fixed),
+        cropped_(renderers, {.comparison = Comparison::kCropped, .sharpness = *options.sharpness, .resolution = kCroppedSize}),
+        whole_(renderers, {.sharpness = *options.sharpness}),
+        pose_filter_(options, cropped_, dofs_where(skeleton_, [&](const Dof& dof) {
+                       return root_fixed_ ? !is_root(dof) : !(is_root(dof) && dof.is_translation);
+                     }),
+                     options.seed),
+        root_filter_(options, whole_, dofs_where(skeleton_, is_root), options.seed + 1) {}
+
+  void start(std::span<const StartingPose> starts) override {
+    estimate_ = starts.front().pose;
+    pose_filter_.start(starts);
+    root_filter_.start(starts.first(1));
+    particles_ = pose_filter_.particles();
+  }
+  FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
+    const FilterReport report = pose_filter_.step(cropped_.prepare(observations), estimate_, dt_s, seconds);
+    if (!root_fixed_) root_filter_.step(whole_.prepare(observations), pose_filter_.estimate(), dt_s, seconds);
+    combine();
+    return report;
+  }
+  FilterReport coast(double dt_s) override {
+    const FilterReport report = pose_filter_.coast(dt_s);
+    root_filter_.coast(dt_s);
+    combine();
+    return report;
+  }
+  const ParticleSet& particles() const override { return particles_; }
+  std::vector<double> estimate() const override { return estimate_; }
+
+ private:
+  // Pose particles, each with a root translation of the root filter's.
+  void combine() {
+    particles_ = pose_filter_.particles();
+    estimate_ = pose_filter_.estimate();
+    if (root_fixed_) return;
+    const std::vector<double> root = root_filter_.estimate();
+    const StateBatch& root_states = root_filter_.particles().states;
+    for (Eigen::Index d = 0; d < skeleton_.num_dofs(); ++d) {
+      const Dof& dof = skeleton_.dofs()[static_cast<size_t>(d)];
+      if (!is_root(dof) || !dof.is_translation) continue;
+      estimate_[static_cast<size_t>(d)] = root[static_cast<size_t>(d)];
+      particles_.states.col(d) = root_states.col(d);
+    }
+  }
+
+  const Skeleton& skeleton_;
+  bool root_fixed_;
+  SilhouetteLikelihood cropped_, whole_;
+  SamplingFilter pose_filter_, root_filter_;
+  ParticleSet particles_;
+  std::vector<double> estimate_;
+};
+
+}  // namespace
+
+std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, Renderers renderers) {
+  options.check();
+  if (options.preset == "thesis") return std::make_unique<TwoFilters>(options, renderers);
+  if (*options.num_layers > 1 && options.annealing == Annealing::kAdaptive) {
+    return std::make_unique<AdaptiveFilter>(options, std::move(renderers));
+  }
+  return std::make_unique<JointFilter>(options, std::move(renderers));
+}
+
+}  // namespace silpose
