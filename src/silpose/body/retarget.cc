@@ -10,9 +10,12 @@
 #include <utility>
 
 #include "silpose/base/check.h"
+#include "silpose/body/retarget_source.h"
 
 namespace silpose {
 namespace {
+
+using namespace retarget_source;  // NOLINT: the other half of this file
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -20,18 +23,8 @@ using Eigen::Vector3d;
 constexpr double kLimbWeight = 1, kTrunkWeight = 0.7, kTipWeight = 0.4;
 constexpr double kPullToZero = 1e-4, kPullToLast = 1e-3;  // against limb directions of unit length
 constexpr int kIterations = 60;
-constexpr double kRestTurn = to_radians(0.5), kRestJump = to_radians(5);
+constexpr double kRestJump = to_radians(5);
 constexpr double kStuck = to_radians(5);
-constexpr std::array kSides{"left_", "right_"};
-
-// Where the parts of the clip's skeleton are: indices of its joints; -1: not there.
-struct Parts {
-  int root = -1, chest = -1, neck = -1, head = -1;
-  struct Limbs {
-    int thigh = -1, shin = -1, foot = -1, toe = -1, upper_arm = -1, forearm = -1, hand = -1, finger = -1;
-  };
-  std::array<Limbs, 2> side;
-};
 
 // A direction to match: from a point of one of our joints to a point of another, both fixed to their joints.
 struct Segment {
@@ -48,70 +41,10 @@ struct Target {
   Vector3d hips = Vector3d::Zero();  // mid-point of the hip joints, clip units
 };
 
-int common_ancestor(const Clip& clip, int a, int b) {
-  while (a != b) (a > b ? a : b) = clip.joints[static_cast<size_t>(std::max(a, b))].parent_idx;
-  return a;
-}
-
-Result<Parts> find_parts(const Clip& clip) {
-  const std::vector<std::string> names = clip.joint_names();
-  Parts parts;
-  std::string missing;
-  const auto need = [&](const std::string& part) {
-    const std::optional<int> found = find_part(names, part);
-    if (!found) missing += (missing.empty() ? "" : ", ") + part;
-    return found.value_or(-1);
-  };
-  parts.root = need("root");
-  parts.head = need("head");
-  parts.neck = find_part(names, "neck").value_or(parts.head);
-  for (size_t s = 0; s < 2; ++s) {
-    const std::string side = kSides[s];
-    Parts::Limbs& limbs = parts.side[s];
-    limbs = {need(side + "thigh"),     need(side + "shin"),
-             need(side + "foot"),      find_part(names, side + "toe").value_or(-1),
-             need(side + "upper_arm"), need(side + "forearm"),
-             need(side + "hand"),      find_part(names, side + "finger").value_or(-1)};
-  }
-  if (!missing.empty()) return error("{}: no joint that could be {}", clip.name, missing);
-  parts.chest =
-      common_ancestor(clip, parts.neck, common_ancestor(clip, parts.side[0].upper_arm, parts.side[1].upper_arm));
-  return parts;
-}
-
-std::vector<Rigid3> rest_pose(const Clip& clip) {
-  std::vector<Rigid3> rest;
-  for (const Vector3d& position : clip.rest_positions()) rest.push_back({Matrix3d::Identity(), position});
-  return rest;
-}
-
-Vector3d middle(std::span<const Rigid3> joints, int a, int b) {
-  return (joints[static_cast<size_t>(a)].translation + joints[static_cast<size_t>(b)].translation) / 2;
-}
-
-double distance(std::span<const Rigid3> joints, int a, int b) {
-  return (joints[static_cast<size_t>(a)].translation - joints[static_cast<size_t>(b)].translation).norm();
-}
-
-// Columns left, up and forward of the body in the clip's rest pose, in clip coordinates.
-Matrix3d rest_axes(std::span<const Rigid3> rest, const Parts& parts) {
-  const Vector3d hips = middle(rest, parts.side[0].thigh, parts.side[1].thigh);
-  Vector3d up = (rest[static_cast<size_t>(parts.neck)].translation - hips).normalized();
-  // Captures are laid out along their axes: a spine that leans a little in the rest pose is no reason to tilt the body.
-  for (int axis = 0; axis < 3; ++axis) {
-    if (std::abs(up[axis]) > 0.9) up = Vector3d::Unit(axis) * (up[axis] > 0 ? 1 : -1);
-  }
-  Vector3d left = rest[static_cast<size_t>(parts.side[0].thigh)].translation -
-                  rest[static_cast<size_t>(parts.side[1].thigh)].translation;
-  left = (left - up * left.dot(up)).normalized();
-  Matrix3d axes;
-  axes << left, up, left.cross(up);
-  return axes;
-}
-
 class Retargeter {
  public:
-  Retargeter(const BodyModel& body, const Clip& clip, const Parts& parts, const Matrix3d& axes)
+  // `axes`: see rest_axes(). `up`: of the clip's world.
+  Retargeter(const BodyModel& body, const Clip& clip, const Parts& parts, const Matrix3d& axes, const Vector3d& up)
       : body_(body), skeleton_(body.skeleton), parts_(parts) {
     const std::vector<Rigid3> rest = rest_pose(clip);
     for (size_t s = 0; s < 2; ++s) {
@@ -121,13 +54,9 @@ class Retargeter {
       add_limb(side + "shin", side + "foot", from.shin, from.foot);
       add_limb(side + "upper_arm", side + "forearm", from.upper_arm, from.forearm);
       add_limb(side + "forearm", side + "hand", from.forearm, from.hand);
-      // Ankle to toe base slopes differently from rig to rig: a foot flat in the clip's rest pose is flat in ours.
       if (from.toe >= 0 && distance(rest, from.foot, from.toe) > 0) {
-        const Vector3d toe =
-            rest[static_cast<size_t>(from.toe)].translation - rest[static_cast<size_t>(from.foot)].translation;
-        Vector3d ours = axes.transpose() * toe.normalized();
-        ours.x() = 0;
-        if (ours.z() > 0.5) add_tip(side + "foot", ours.normalized(), from.foot, from.toe);
+        const double pitch = flat_foot_pitch(clip, from.foot, from.toe, axes.col(1), up);
+        add_tip(side + "foot", {0, std::sin(pitch), std::cos(pitch)}, from.foot, from.toe);
       }
       if (from.finger >= 0 && distance(rest, from.hand, from.finger) > 0) {
         add_tip(side + "hand", -Vector3d::UnitY(), from.hand, from.finger);
@@ -328,33 +257,6 @@ class Retargeter {
   std::vector<Segment> segments_;
 };
 
-// Clip world to y up. Told by the rest pose, unless the motion itself stands up along another axis.
-bool is_z_up(const Clip& clip, const Parts& parts, const Vector3d& rest_up) {
-  Vector3d mean = Vector3d::Zero();
-  for (size_t t = 0; t < clip.num_frames(); ++t) {
-    mean += clip.world_from_joint(t)[static_cast<size_t>(parts.root)].rotation * rest_up;
-  }
-  mean /= static_cast<double>(clip.num_frames());
-  const bool rest_says = std::abs(rest_up.z()) > std::abs(rest_up.y());
-  const double agreement = rest_says ? mean.z() : mean.y(), other = rest_says ? mean.y() : mean.z();
-  return agreement < 0.5 && other > 0.7 ? !rest_says : rest_says;
-}
-
-// Of the joints that are turned in the second frame, three quarters are not in the first.
-bool opens_at_rest(const Clip& clip) {
-  if (clip.num_frames() < 2) return false;
-  const auto is_turned = [&](size_t i) {
-    return clip.rotations[i].angularDistance(Eigen::Quaterniond::Identity()) > kRestTurn;
-  };
-  int turned = 0, unturned_before = 0;
-  for (size_t j = 0; j < clip.num_joints(); ++j) {
-    if (!is_turned(clip.num_joints() + j)) continue;
-    ++turned;
-    unturned_before += !is_turned(j);
-  }
-  return 4 * unturned_before >= 3 * turned;
-}
-
 // Mean angle by which the limbs turn from one target to another.
 double mean_turn(const std::vector<Segment>& segments, const Target& a, const Target& b) {
   double sum = 0;
@@ -374,20 +276,6 @@ Target interpolate(const Target& a, const Target& b, double fraction) {
     out.directions.push_back((a.directions[s] + fraction * (b.directions[s] - a.directions[s])).normalized());
   }
   return out;
-}
-
-// Times at `fps` over frames [first, T), in frames of the clip.
-std::vector<double> sample_times(const Clip& clip, size_t first, double fps) {
-  double frames_per_sample = clip.fps / fps;
-  const double whole = std::round(frames_per_sample);
-  if (whole >= 1 && std::abs(frames_per_sample - whole) < 0.01 * whole) frames_per_sample = whole;
-  std::vector<double> times;
-  const auto last = static_cast<double>(clip.num_frames() - 1);
-  for (size_t i = 0;; ++i) {
-    const double time = static_cast<double>(first) + static_cast<double>(i) * frames_per_sample;
-    if (time > last + 1e-6) return times;
-    times.push_back(std::min(time, last));
-  }
 }
 
 // Where a limb's search starts again when it is stuck: joint, degrees about x and z; each with three twists.
@@ -466,14 +354,13 @@ Result<Retargeted> retarget(const Clip& clip, const BodyModel& body, const Retar
   if (source_leg <= 0 || !axes.allFinite() || axes.determinant() < 0.5) {
     return error("{}: its rest pose has no legs or no hips", clip.name);
   }
-  const Retargeter retargeter(body, clip, *parts, axes);
-
   Retargeted out;
   out.fps = options.fps;
-  out.metres_per_unit = retargeter.leg_length() / source_leg;
   out.is_z_up = is_z_up(clip, *parts, axes.col(1));
   Matrix3d y_up_from_clip = Matrix3d::Identity();
   if (out.is_z_up) y_up_from_clip << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  const Retargeter retargeter(body, clip, *parts, axes, y_up_from_clip.row(1).transpose());
+  out.metres_per_unit = retargeter.leg_length() / source_leg;
   const auto target_at = [&](size_t frame) { return retargeter.target(clip.world_from_joint(frame), y_up_from_clip); };
 
   out.first_frame_skipped =
