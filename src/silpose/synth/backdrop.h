@@ -1,6 +1,6 @@
 // Backdrops of synthetic video: what an empty room, or a green studio, looks like from a camera.
-// Textures are value noise (references.bib: perlin1985) on the floor y = 0 and on a wall behind the scene; the same
-// seed gives the same room from every camera that faces the same way. Threads: functions without state.
+// Textures are value noise (grid values, smoothly interpolated) on the floor y = 0 and on a wall behind the scene; the
+// same seed gives the same room from every camera that faces the same way. Threads: functions without state.
 #pragma once
 
 #include <cstdint>
