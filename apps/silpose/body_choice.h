@@ -1,0 +1,32 @@
+// Which body: `--model human[:key=value,...]` or a .body file. Bodies built from the MakeHuman data are kept in the data
+// directory, so that the next run loads them in milliseconds.
+// Threads: the main thread only.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "apps/silpose/console.h"
+#include "silpose/base/result.h"
+#include "silpose/body/body_model.h"
+
+namespace silpose::app {
+
+void add_model_option(CLI::App& command, std::string& model);
+
+// Where the fetched body data lies: $SILPOSE_DATA, else data/ of the source tree this was built from, else
+// ../share/silpose beside the program.
+std::filesystem::path data_directory();
+
+// True when `body_file` is there and neither the program nor the body data is newer.
+bool is_up_to_date(const std::filesystem::path& body_file);
+
+// The body of a --model. Errors: unknown model, phenotype out of range, body data missing or of another hash.
+Result<std::shared_ptr<const BodyModel>> choose_body(const std::string& model, Console& console);
+
+// The same, always built, never taken from a kept file.
+Result<BodyModel> build_body(const std::string& model, Console& console);
+
+}  // namespace silpose::app

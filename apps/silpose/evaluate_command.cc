@@ -1,0 +1,66 @@
+// silpose evaluate: errors of a result against a truth.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <memory>
+
+#include "apps/silpose/body_choice.h"
+#include "apps/silpose/command.h"
+#include "silpose/evaluate/evaluation.h"
+
+namespace silpose::app {
+namespace {
+
+struct EvaluateCommandOptions {
+  std::string result, truth, model;
+  EvaluateOptions evaluation;
+};
+
+// The body that a result was made with, as its run.json says.
+std::string model_of(const std::filesystem::path& directory) {
+  std::ifstream file(directory / "run.json");
+  const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
+  return run.is_object() ? run.value("model", "human") : "human";
+}
+
+Result<Outcome> run_evaluate(const EvaluateCommandOptions& options, Console& console) {
+  if (options.evaluation.end_s < options.evaluation.start_s) throw UsageError("--start is after --end");
+  const auto body = choose_body(options.model.empty() ? model_of(options.result) : options.model, console);
+  if (!body) return body.failure();
+  const Result<Recorded> result = read_recorded(options.result, (*body)->skeleton);
+  if (!result) return result.failure();
+  const Result<Recorded> truth = read_recorded(options.truth, (*body)->skeleton);
+  if (!truth) return truth.failure();
+  const Result<Evaluation> evaluation = evaluate(*result, *truth, **body, options.evaluation);
+  if (!evaluation) return evaluation.failure();
+
+  Outcome outcome;
+  outcome.json["frames"] = evaluation->frames;
+  outcome.json["frames_missing"] = evaluation->frames_missing;
+  outcome.text = fmt::format("{} frames, {} missing from the result", evaluation->frames, evaluation->frames_missing);
+  for (const auto& [name, figure] : evaluation->figures) {
+    if (figure) {
+      outcome.json[name] = {{"mean", figure->mean}, {"std", figure->std}};
+      outcome.text += fmt::format("\n  {:24} {:10.3f} \u00b1 {:.3f}", name, figure->mean, figure->std);
+    } else {
+      outcome.json[name] = nullptr;
+      outcome.text += fmt::format("\n  {:24} {:>10}", name, "-");
+    }
+  }
+  return outcome;
+}
+
+}  // namespace
+
+Command add_evaluate(CLI::App& program, const CommonOptions&) {
+  const auto options = std::make_shared<EvaluateCommandOptions>();
+  CLI::App* const app = program.add_subcommand("evaluate", "Errors of a result against a truth");
+  app->add_option("--result", options->result, "Directory of a result")->required();
+  app->add_option("--truth", options->truth, "Directory of a truth")->required();
+  app->add_option("--start", options->evaluation.start_s, "Seconds: only what is not before");
+  app->add_option("--end", options->evaluation.end_s, "Seconds: only what is before");
+  app->add_option("--model", options->model, "The body of the result; default: as its run.json says");
+  return {app, [options](Console& console) { return run_evaluate(*options, console); }};
+}
+
+}  // namespace silpose::app

@@ -1,0 +1,139 @@
+// silpose model: body models: which there are, build one, look into one, make one coarser.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/silpose/body_choice.h"
+#include "apps/silpose/command.h"
+#include "apps/silpose/result_directory.h"
+#include "silpose/geometry/rigid3.h"
+
+namespace silpose::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+nlohmann::ordered_json facts_of(const BodyModel& body) {
+  nlohmann::ordered_json json;
+  json["name"] = body.name;
+  json["skeleton"] = body.skeleton.name();
+  json["joints"] = body.skeleton.num_joints();
+  json["dofs"] = body.skeleton.num_dofs();
+  json["vertices"] = body.rest.vertices.size();
+  json["faces"] = body.rest.faces.size();
+  json["closed"] = is_closed(body.rest.faces);
+  json["height_m"] = body.height_m;
+  json["weight_kg"] = body.weight_kg;
+  json["facts"] = body.facts;
+  return json;
+}
+
+std::string summary_of(const BodyModel& body) {
+  return fmt::format("{}: {} joints, {} DOF, {} vertices, {} faces, {:.3f} m, {:.1f} kg", body.name,
+                     body.skeleton.num_joints(), body.skeleton.num_dofs(), body.rest.vertices.size(),
+                     body.rest.faces.size(), body.height_m, body.weight_kg);
+}
+
+Result<Outcome> list_models() {
+  Outcome outcome;
+  outcome.json["models"] = {"human"};
+  outcome.text = "human    20 joints, 37 DOF; human:age=YEARS,sex=f|m|0..1,height=M,weight=KG,muscle=0..1";
+  nlohmann::ordered_json kept = nlohmann::json::array();
+  std::error_code failed;
+  for (const fs::path& folder : {data_directory(), data_directory() / "bodies"}) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+      if (entry.path().extension() != ".body") continue;
+      kept.push_back(entry.path().string());
+      outcome.text += "\n" + entry.path().string();
+    }
+  }
+  outcome.json["files"] = kept;
+  return outcome;
+}
+
+Result<Outcome> inspect_model(const std::string& model, Console& console) {
+  const auto body = choose_body(model, console);
+  if (!body) return body.failure();
+  Outcome outcome;
+  outcome.json = facts_of(**body);
+  outcome.text = summary_of(**body);
+  for (const auto& [key, value] : (*body)->facts) outcome.text += fmt::format("\n  {}: {}", key, value);
+  nlohmann::ordered_json dofs = nlohmann::json::array();
+  for (const Dof& dof : (*body)->skeleton.dofs()) {
+    const double lower = dof.is_translation ? dof.lower : to_degrees(dof.lower);
+    const double upper = dof.is_translation ? dof.upper : to_degrees(dof.upper);
+    dofs.push_back({{"column", dof.column()},
+                    {"joint", (*body)->skeleton.joints()[static_cast<size_t>(dof.joint_idx)].name},
+                    {"lower", lower},
+                    {"upper", upper},
+                    {"periodic", dof.is_periodic}});
+    outcome.text += fmt::format("\n  {:24} {:8.2f} to {:8.2f}", dof.column(), lower, upper);
+  }
+  outcome.json["limits"] = dofs;
+  return outcome;
+}
+
+Result<Outcome> write_model(const BodyModel& body, const std::string& out) {
+  const Result<void> written = write_whole(out, [&](const fs::path& path) { return write_body(path, body); });
+  if (!written) return written.failure();
+  Outcome outcome;
+  outcome.json = facts_of(body);
+  outcome.json["out"] = out;
+  outcome.text = fmt::format("{}\nwritten to {}", summary_of(body), out);
+  return outcome;
+}
+
+CLI::Option* add_body_file_option(CLI::App& command, std::string& out) {
+  return command.add_option("--out", out, "The .body file to write")
+      ->required()
+      ->check(CLI::Validator([](const std::string& path) { return fs::path(path).extension() == ".body" ? "" : path + ": does not end in .body"; },
+                             "FILE.body"));
+}
+
+}  // namespace
+
+std::vector<Command> add_model(CLI::App& program, CommonOptions&) {
+  struct Options {
+    std::string model = "human", out;
+    bool if_older = false;
+    int vertices = 2000;
+  };
+  const auto options = std::make_shared<Options>();
+  CLI::App* const model = program.add_subcommand("model", "Body models");
+  model->require_subcommand(1);
+
+  CLI::App* const list = model->add_subcommand("list", "Which models there are");
+  CLI::App* const build = model->add_subcommand("build", "Build a body and write it as a .body file");
+  add_model_option(*build, options->model);
+  add_body_file_option(*build, options->out);
+  build->add_flag("--if-older", options->if_older, "Only where the file is missing or older than the program or the data");
+  CLI::App* const inspect = model->add_subcommand("inspect", "What a body is made of, and the limits of its DOF");
+  inspect->add_option("MODEL,--model", options->model, "As --model elsewhere")->capture_default_str();
+  CLI::App* const lod = model->add_subcommand("lod", "The same body with fewer vertices");
+  add_model_option(*lod, options->model);
+  add_body_file_option(*lod, options->out);
+  lod->add_option("--vertices", options->vertices, "About how many")->capture_default_str()->check(CLI::Range(100, 20000));
+
+  return {
+      {list, [](Console&) { return list_models(); }},
+      {build,
+       [options](Console& console) -> Result<Outcome> {
+         if (options->if_older && is_up_to_date(options->out)) {
+           const Result<BodyModel> kept = load_body(options->out);
+           if (kept) return Outcome{facts_of(*kept), summary_of(*kept), false};
+         }
+         const Result<BodyModel> body = build_body(options->model, console);
+         if (!body) return body.failure();
+         return write_model(*body, options->out);
+       }},
+      {inspect, [options](Console& console) { return inspect_model(options->model, console); }},
+      {lod,
+       [options](Console& console) -> Result<Outcome> {
+         const auto body = choose_body(options->model, console);
+         if (!body) return body.failure();
+         return write_model(level_of_detail(**body, options->vertices), options->out);
+       }},
+  };
+}
+
+}  // namespace silpose::app

@@ -1,0 +1,200 @@
+#include "apps/silpose/observation_source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "apps/silpose/command.h"
+#include "silpose/base/clock.h"
+#include "silpose/image/image_file.h"
+
+namespace silpose::app {
+namespace {
+
+// One value for all cameras, or one a camera; `fallback` where none is given.
+std::string of_camera(const std::string& option, const std::vector<std::string>& values, size_t camera,
+                      size_t num_cameras, const std::string& fallback) {
+  if (values.empty()) return fallback;
+  if (values.size() == 1) return values[0];
+  if (values.size() != num_cameras) {
+    throw UsageError(fmt::format("{}: given {} times for {} videos", option, values.size(), num_cameras));
+  }
+  return values[camera];
+}
+
+Box parse_region(const std::string& text) {
+  const std::vector<double> numbers = parse_numbers("--region", text, 4);
+  const bool fits = std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::abs(n) < 1e6 && n == std::floor(n); });
+  const auto whole = [&](size_t i) { return static_cast<int>(numbers[i]); };
+  if (!fits || whole(2) < 1 || whole(3) < 1) throw UsageError(fmt::format("--region: {} is not x,y,w,h in whole pixels", text));
+  return {whole(0), whole(1), whole(2), whole(3)};
+}
+
+Result<CleanUpOptions> clean_up_options(const InputOptions& options, const Video& video, size_t camera) {
+  const auto count = static_cast<size_t>(video.num_cameras());
+  CleanUpOptions clean_up;
+  clean_up.grow_px = options.grow_px;
+  clean_up.min_blob_px = options.min_blob_px;
+  const std::string region = of_camera("--region", options.regions, camera, count, "");
+  if (!region.empty()) clean_up.region = parse_region(region);
+  const std::string garbage = of_camera("--garbage-mask", options.garbage_masks, camera, count, "");
+  if (!garbage.empty()) {
+    const Result<Mask> mask = read_mask(garbage);
+    if (!mask) return mask.failure();
+    const int width = video.width(static_cast<int>(camera)), height = video.height(static_cast<int>(camera));
+    if (mask->width() != width || mask->height() != height) {
+      return error("{}: {}x{}, but the video is {}x{}", garbage, mask->width(), mask->height(), width, height);
+    }
+    clean_up.garbage_mask = *mask;
+  }
+  return clean_up;
+}
+
+Observation observation_of(Segmentation segmentation) {
+  Observation observation;
+  observation.box = segmentation.mask.bounding_box();
+  observation.mask = std::move(segmentation.mask);
+  observation.trust = {.overall = segmentation.trust,
+                       .nothing_found = segmentation.nothing_found,
+                       .touches_border = segmentation.touches_border,
+                       .area_jumped = segmentation.area_jumped};
+  return observation;
+}
+
+}  // namespace
+
+void add_input_options(CLI::App& command, InputOptions& options) {
+  command.add_option("VIDEO", options.videos, "A file, a folder of pictures, a pattern (img-%06d.png) or camera:N");
+  command.add_option("--segmenter", options.segmenter, "How the person is cut out: auto, background or masks")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "background", "masks"}));
+  command
+      .add_option("--background", options.backgrounds,
+                  "auto (from the whole clip), online, lead-in:SECONDS, or a video or picture of the empty scene")
+      ->allow_extra_args(false);
+  command.add_option("--masks", options.masks, "Masks made elsewhere: a folder, a pattern or a video, once a camera")
+      ->allow_extra_args(false);
+  command
+      .add_option("--region", options.regions,
+                  "x,y,w,h in pixels: a blob counts only if at least half of it lies inside; it is not cut")
+      ->allow_extra_args(false);
+  command.add_option("--garbage-mask", options.garbage_masks, "A picture: what is not white in it is cut away")
+      ->allow_extra_args(false);
+  command.add_option("--grow", options.grow_px, "Grows the mask by so many pixels; negative shrinks")
+      ->capture_default_str()
+      ->check(CLI::Range(-64, 64));
+  command.add_option("--min-blob", options.min_blob_px, "Pixels below which a blob does not count")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100'000'000));
+  command.add_option("--fps", options.default_fps, "Frames a second of input that carries no rate")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 10000.0));
+  command.add_option("--start", options.start_s, "Seconds into the clip to begin at")->check(CLI::NonNegativeNumber);
+  command.add_option("--end", options.end_s, "Seconds into the clip to end at, included")->check(CLI::NonNegativeNumber);
+}
+
+Result<ObservationSource> ObservationSource::open(const InputOptions& options, Console& console) {
+  if (options.videos.empty()) throw UsageError("VIDEO is missing");
+  if (options.start_s && options.end_s && *options.end_s < *options.start_s) {
+    throw UsageError(fmt::format("--start {}: is after --end {}", *options.start_s, *options.end_s));
+  }
+  ObservationSource source;
+  source.options_ = options;
+  Result<Video> video = open_video(options.videos, {.default_fps = options.default_fps});
+  if (!video) return video.failure();
+  source.video_ = std::make_unique<Video>(std::move(*video));
+  const Video& opened = *source.video_;
+  if (opened.fps_assumed()) {
+    source.warnings_.push_back(fmt::format("{}: carries no frame rate, {} a second assumed", opened.name(), opened.fps()));
+  }
+  // A quarter of a frame's time makes up for rounded time stamps.
+  source.first_frame_ = static_cast<int64_t>(std::ceil(options.start_s.value_or(0) * opened.fps() - 0.25));
+  source.last_frame_ = options.end_s ? static_cast<int64_t>(std::floor(*options.end_s * opened.fps() + 0.25))
+                                     : std::numeric_limits<int64_t>::max();
+
+  const Stopwatch learning;
+  const auto count = static_cast<size_t>(opened.num_cameras());
+  for (size_t camera = 0; camera < count; ++camera) {
+    SegmenterOptions segmenter;
+    segmenter.kind = options.segmenter;
+    segmenter.background = of_camera("--background", options.backgrounds, camera, count, "auto");
+    segmenter.masks = of_camera("--masks", options.masks, camera, count, "");
+    segmenter.default_fps = options.default_fps;
+    const Result<CleanUpOptions> clean_up = clean_up_options(options, opened, camera);
+    if (!clean_up) return clean_up.failure();
+    segmenter.clean_up = *clean_up;
+    Result<std::unique_ptr<Segmenter>> made = make_segmenter(options.videos[camera], segmenter, &console);
+    if (!made) return made.failure();
+    source.segmenters_.push_back(std::move(*made));
+  }
+  source.learning_s_ = learning.seconds();
+  return source;
+}
+
+int64_t ObservationSource::first_index() const {
+  int64_t first = first_frame_;
+  for (const auto& segmenter : segmenters_) first = std::max(first, segmenter->first_index());
+  return first;
+}
+
+Result<std::optional<Instant>> ObservationSource::next() {
+  const Stopwatch decoding;
+  double segment_s = 0;
+  for (;;) {
+    Result<std::optional<Frame>> frame = video_->next();
+    if (!frame) return frame.failure();
+    if (!frame->has_value() || (*frame)->index > last_frame_) return std::optional<Instant>();
+    const bool wanted = (*frame)->index >= first_index();
+    Instant instant;
+    for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
+      // A background learned online has to see what goes before the first frame that is wanted.
+      if (!wanted && !segmenters_[camera]->name().starts_with("background online")) continue;
+      const Stopwatch segmenting;
+      Result<Segmentation> segmentation = segmenters_[camera]->segment((*frame)->images[camera], (*frame)->index);
+      segment_s += segmenting.seconds();
+      if (!segmentation) return segmentation.failure();
+      instant.observations.push_back(observation_of(std::move(*segmentation)));
+    }
+    if (!wanted) {
+      if (Console::interrupted()) return std::optional<Instant>();
+      continue;
+    }
+    instant.frame = std::move(**frame);
+    instant.segment_s = segment_s;
+    instant.decode_s = decoding.seconds() - segment_s;
+    return std::optional<Instant>(std::move(instant));
+  }
+}
+
+std::vector<PictureSize> ObservationSource::sizes() const {
+  std::vector<PictureSize> sizes;
+  for (int c = 0; c < video_->num_cameras(); ++c) sizes.push_back({video_->width(c), video_->height(c)});
+  return sizes;
+}
+
+int64_t ObservationSource::num_expected() const {
+  if (video_->num_frames_hint() <= 0) return 0;
+  return std::max<int64_t>(0, std::min(video_->num_frames_hint() - 1, last_frame_) - first_index() + 1);
+}
+
+std::string ObservationSource::background() const {
+  std::string names;
+  for (const auto& segmenter : segmenters_) {
+    if (names.find(segmenter->name()) == std::string::npos) names += (names.empty() ? "" : ", ") + segmenter->name();
+  }
+  return names;
+}
+
+std::vector<std::string> ObservationSource::warnings() const {
+  std::vector<std::string> all = warnings_;
+  for (const auto& segmenter : segmenters_) {
+    const std::vector<std::string> own = segmenter->warnings();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  if (video_->truncated()) all.push_back(fmt::format("{}: breaks off before its end", video_->name()));
+  return all;
+}
+
+}  // namespace silpose::app

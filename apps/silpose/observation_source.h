@@ -1,0 +1,66 @@
+// ObservationSource: from the videos and the options of a command to one observation a camera and instant.
+// Threads: the main thread only; segmentation itself uses all cores.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/silpose/camera_choice.h"
+#include "apps/silpose/console.h"
+#include "silpose/base/result.h"
+#include "silpose/image/video.h"
+#include "silpose/segment/segmenter.h"
+#include "silpose/shape/observation.h"
+
+namespace silpose::app {
+
+struct InputOptions {
+  std::vector<std::string> videos;
+  std::string segmenter = "auto";
+  std::vector<std::string> masks, backgrounds, regions, garbage_masks;  // one for all, or one a camera
+  int grow_px = 0, min_blob_px = 0;
+  double default_fps = 30;
+  std::optional<double> start_s, end_s;
+};
+
+void add_input_options(CLI::App& command, InputOptions& options);
+
+// Everything of one instant.
+struct Instant {
+  Frame frame;
+  std::vector<Observation> observations;  // [C]
+  double decode_s = 0, segment_s = 0;
+};
+
+class ObservationSource {
+ public:
+  // Learns the backgrounds that have to be learned. Errors: those of open_video() and make_segmenter(); a garbage mask
+  // of another size. Throws UsageError for options that do not fit together.
+  static Result<ObservationSource> open(const InputOptions& options, Console& console);
+
+  // The next instant to be tracked, nothing at the end. Errors: those of the video and of the segmenter.
+  Result<std::optional<Instant>> next();
+
+  [[nodiscard]] const Video& video() const { return *video_; }
+  [[nodiscard]] std::vector<PictureSize> sizes() const;
+  // How many instants next() will give, where that is known; 0 otherwise.
+  [[nodiscard]] int64_t num_expected() const;
+  [[nodiscard]] std::string background() const;              // "background auto", "masks", ... of each camera
+  [[nodiscard]] std::vector<std::string> warnings() const;   // whole only after the last next()
+  [[nodiscard]] double learning_s() const { return learning_s_; }  // time spent before the first instant
+
+ private:
+  ObservationSource() = default;
+  [[nodiscard]] int64_t first_index() const;
+  InputOptions options_;
+  std::unique_ptr<Video> video_;
+  std::vector<std::unique_ptr<Segmenter>> segmenters_;
+  std::vector<std::string> warnings_;
+  double learning_s_ = 0;
+  int64_t first_frame_ = 0, last_frame_ = 0;  // of the stretch that --start and --end choose
+};
+
+}  // namespace silpose::app

@@ -1,0 +1,127 @@
+#include "apps/silpose/result_directory.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <system_error>
+
+namespace silpose::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Everything that track, synth and segment put into a directory.
+constexpr std::array<std::string_view, 12> kFiles = {
+    "poses.csv",   "poses_normalised.csv", "spread.csv",  "joints.csv", "camera.toml", "overlay.mp4",
+    "report.html", "config.toml",          "motion.bvh",  "run.json",   "video.mp4",   "background.png"};
+
+bool is_mask_folder(const fs::path& folder) {
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+    const std::string stem = entry.path().stem().string();
+    const bool digits = !stem.empty() && std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; });
+    if (!digits || entry.path().extension() != ".png" || !entry.is_regular_file()) return false;
+  }
+  return !failed;
+}
+
+bool is_own(const fs::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
+  if (entry.is_directory()) return (name == "masks" || name.starts_with("masks_")) && is_mask_folder(entry.path());
+  if (name.starts_with("video_") && name.ends_with(".mp4")) return true;
+  return std::find(kFiles.begin(), kFiles.end(), name) != kFiles.end();
+}
+
+bool has_run_json(const fs::path& directory) {
+  std::ifstream file(directory / "run.json");
+  const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
+  return run.is_object() && run.contains("command") && run["command"].is_string() &&
+         run["command"].get<std::string>().starts_with("silpose ");
+}
+
+}  // namespace
+
+std::optional<std::string> foreign_content(const fs::path& directory, bool must_be_whole) {
+  std::error_code failed;
+  bool empty = true;
+  for (const fs::directory_entry& entry : fs::directory_iterator(directory, failed)) {
+    empty = false;
+    if (!is_own(entry)) return entry.path().filename().string();
+  }
+  if (failed && failed != std::errc::no_such_file_or_directory) return failed.message();
+  if (!empty && must_be_whole && !has_run_json(directory)) return "files, but no run.json of silpose";
+  return std::nullopt;
+}
+
+Result<ResultDirectory> ResultDirectory::create(const fs::path& directory) {
+  ResultDirectory result;
+  result.final_ = directory.has_filename() ? directory : directory.parent_path();  // "out/" is "out"
+  if (result.final_.filename() == "." || result.final_.filename() == ".." || result.final_.filename().empty()) {
+    return error("{}: give the output directory by its name", directory.string());
+  }
+  fs::path partial = result.final_;
+  partial += ".partial";
+
+  std::error_code failed;
+  for (const fs::path& path : {result.final_, partial}) {
+    const fs::file_status status = fs::status(path, failed);
+    if (!fs::exists(status)) continue;
+    if (!fs::is_directory(status)) return error("{}: is there and is not a directory", path.string());
+    const std::optional<std::string> foreign = foreign_content(path, path == result.final_);
+    if (foreign) return error("{}: holds something else than a result of silpose ({}); left alone", path.string(), *foreign);
+  }
+  fs::remove_all(partial, failed);
+  fs::create_directories(partial, failed);
+  if (failed || access(partial.c_str(), W_OK) != 0) {
+    return error("{}: not writable ({})", directory.string(), failed ? failed.message() : "permission denied");
+  }
+  result.partial_ = partial;
+  return Result<ResultDirectory>(std::move(result));
+}
+
+Result<void> ResultDirectory::commit() {
+  std::error_code failed;
+  fs::path earlier;
+  if (fs::exists(final_)) {
+    earlier = final_;
+    earlier += fmt::format(".old-{}", getpid());
+    fs::rename(final_, earlier, failed);
+    if (failed) return error("{}: cannot be replaced ({})", final_.string(), failed.message());
+  }
+  fs::rename(partial_, final_, failed);
+  if (failed) {
+    std::error_code ignored;
+    if (!earlier.empty()) fs::rename(earlier, final_, ignored);
+    return error("{}: cannot be renamed ({})", partial_.string(), failed.message());
+  }
+  partial_.clear();
+  if (!earlier.empty()) fs::remove_all(earlier, failed);
+  return {};
+}
+
+ResultDirectory::~ResultDirectory() {
+  std::error_code ignored;
+  if (!partial_.empty()) fs::remove_all(partial_, ignored);
+}
+
+Result<void> write_whole(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {
+  std::error_code failed;
+  if (fs::is_directory(file, failed)) return error("{}: is a directory", file.string());
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
+  fs::path partial = file.parent_path() / (file.stem().string() + ".partial");
+  partial += file.extension();
+  const Result<void> written = write(partial);
+  if (!written) {
+    fs::remove(partial, failed);
+    return error("{}: not writable ({})", file.string(), written.error().message);
+  }
+  fs::rename(partial, file, failed);
+  if (failed) return error("{}: not writable ({})", file.string(), failed.message());
+  return {};
+}
+
+}  // namespace silpose::app

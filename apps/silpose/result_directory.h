@@ -1,0 +1,52 @@
+// ResultDirectory: a directory of results is written as DIR.partial and renamed to DIR when it is whole; an earlier
+// result under DIR is replaced only then. A directory that holds anything silpose does not write is never touched.
+// Threads: the main thread only.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "silpose/base/result.h"
+
+namespace silpose::app {
+
+class ResultDirectory {
+ public:
+  // Makes DIR.partial, empty. Errors: DIR is a file or holds something else; not writable.
+  static Result<ResultDirectory> create(const std::filesystem::path& directory);
+
+  // Where to write.
+  [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
+  // Where it will be.
+  [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
+
+  // Renames to DIR.
+  Result<void> commit();
+  // Leaves DIR.partial as it is. Without either, the destructor removes it: the work failed.
+  void keep() { partial_.clear(); }
+
+  ResultDirectory(ResultDirectory&& other) noexcept { *this = std::move(other); }
+  ResultDirectory& operator=(ResultDirectory&& other) noexcept {
+    std::swap(final_, other.final_);
+    std::swap(partial_, other.partial_);
+    return *this;
+  }
+  ~ResultDirectory();
+
+ private:
+  ResultDirectory() = default;
+  std::filesystem::path final_, partial_;  // partial_ is empty once it is renamed or kept
+};
+
+// What directory holds that silpose does not write; nothing when it could be replaced. An absent or empty directory can.
+std::optional<std::string> foreign_content(const std::filesystem::path& directory, bool must_be_whole);
+
+// Writes a single file beside its final name, then renames it: `write` gets the temporary path, which ends in the same
+// extension. Errors: those of `write`; not writable.
+Result<void> write_whole(const std::filesystem::path& file,
+                         const std::function<Result<void>(const std::filesystem::path&)>& write);
+
+}  // namespace silpose::app

@@ -1,0 +1,94 @@
+// silpose segment: masks only.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/silpose/command.h"
+#include "apps/silpose/observation_source.h"
+#include "apps/silpose/option_file.h"
+#include "apps/silpose/result_directory.h"
+#include "apps/silpose/run_facts.h"
+#include "silpose/image/image_file.h"
+
+namespace silpose::app {
+namespace {
+
+struct SegmentOptions {
+  InputOptions input;
+  std::string out, config;
+};
+
+Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, const CommonOptions& common, Console& console) {
+  if (options.out.empty()) throw UsageError("--out is missing");
+  if (options.input.videos.size() > 1) throw UsageError("VIDEO: one at a time");
+  Result<ResultDirectory> directory = ResultDirectory::create(options.out);
+  if (!directory) return directory.failure();
+  Result<ObservationSource> source = ObservationSource::open(options.input, console);
+  if (!source) return source.failure();
+  std::filesystem::create_directories(directory->path() / "masks");
+
+  int64_t frames = 0, empty = 0;
+  double decode_s = 0, segment_s = source->learning_s(), area = 0;
+  bool stopped = false;
+  while (!stopped) {
+    const Result<std::optional<Instant>> instant = source->next();
+    if (!instant) return instant.failure();
+    if (!instant->has_value()) break;
+    const Instant& now = **instant;
+    const auto written = write_mask(directory->path() / "masks" / fmt::format("{:06}.png", now.frame.index), now.observations[0].mask);
+    if (!written) return written.failure();
+    ++frames;
+    empty += now.observations[0].trust.nothing_found ? 1 : 0;
+    area += static_cast<double>(now.observations[0].mask.count());
+    decode_s += now.decode_s;
+    segment_s += now.segment_s;
+    stopped = !console.update("segmenting", frames, source->num_expected());
+  }
+  stopped = stopped || Console::interrupted();
+  std::vector<std::string> warnings = source->warnings();
+  if (frames == 0 && !stopped) return error("{}: no frame in the stretch asked for", source->video().name());
+  if (empty == frames) warnings.push_back("no person was seen");
+  for (const std::string& warning : warnings) console.warning(warning);
+
+  Outcome outcome;
+  outcome.json = run_facts(common);
+  outcome.json["frames"] = frames;
+  outcome.json["frames_empty"] = empty;
+  outcome.json["mean_area_px"] = area / static_cast<double>(std::max<int64_t>(1, frames));
+  outcome.json["stages_s"] = {{"decode", decode_s}, {"segment", segment_s}};
+  outcome.json["background"] = source->background();
+  outcome.json["warnings"] = warnings;
+  outcome.json["out"] = options.out;
+  outcome.text = fmt::format("{} masks in {}/masks, {} of them empty ({})", frames, options.out, empty, source->background());
+  outcome.interrupted = stopped;
+  for (const Result<void>& written : {write_option_file(directory->path() / "config.toml", app, {}),
+                                      write_json(directory->path() / "run.json", outcome.json)}) {
+    if (!written) return written.failure();
+  }
+  if (stopped) {
+    directory->keep();
+    return outcome;
+  }
+  const Result<void> done = directory->commit();
+  if (!done) return done.failure();
+  return outcome;
+}
+
+}  // namespace
+
+Command add_segment(CLI::App& program, const CommonOptions& common) {
+  const auto options = std::make_shared<SegmentOptions>();
+  CLI::App* const app = program.add_subcommand("segment", "Cut the person out of a clip: masks only");
+  add_input_options(*app, options->input);
+  app->add_option("--out", options->out, "Directory for masks/ and run.json");
+  app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
+  return {app, [app, options, &common](Console& console) -> Result<Outcome> {
+            if (!options->config.empty()) {
+              const Result<void> applied = apply_option_file(options->config, *app);
+              if (!applied) return applied.failure();
+            }
+            return run_segment(*app, *options, common, console);
+          }};
+}
+
+}  // namespace silpose::app

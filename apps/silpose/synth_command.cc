@@ -1,0 +1,144 @@
+// silpose synth: a sequence with ground truth.
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/silpose/body_choice.h"
+#include "apps/silpose/camera_choice.h"
+#include "apps/silpose/command.h"
+#include "apps/silpose/option_file.h"
+#include "apps/silpose/result_directory.h"
+#include "apps/silpose/run_facts.h"
+#include "silpose/synth/sequence_files.h"
+
+namespace silpose::app {
+namespace {
+
+struct SynthOptions {
+  std::string out, config, model = "human", motion = "static", size = "640x480", backdrop = "textured";
+  std::vector<std::string> views;
+  CameraOptions camera;
+  int frames = 0, lead_in = 0;
+  double fps = 30;
+  std::optional<double> amplitude_deg, period_s;
+  bool colour = false;
+};
+
+// Cameras of a file in place of those that stand around the path.
+Result<void> use_camera_file(const CameraOptions& options, SyntheticSequence& sequence) {
+  Result<CameraChoice> chosen = choose_cameras(options, {});
+  if (!chosen) return chosen.failure();
+  sequence.cameras = chosen->cameras;
+  const Eigen::Vector3d start(sequence.poses[0][0], sequence.poses[0][1], sequence.poses[0][2]);
+  sequence.distance_m = (sequence.cameras[0].centre_in_world() - start).norm();
+  return {};
+}
+
+Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions& common, Console& console,
+                               Outcome& outcome) {
+  SceneOptions scene;
+  const Size size = parse_size("--size", options.size);
+  scene.width = size.width;
+  scene.height = size.height;
+  scene.lead_in = options.lead_in;
+  if (!options.views.empty()) scene.views.clear();
+  for (const std::string& text : options.views) {
+    const Result<View> view = parse_view(text);
+    if (!view) throw UsageError(fmt::format("--view: {}", view.error().message));
+    scene.views.push_back(*view);
+  }
+  const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
+  if (!body) return body.failure();
+  const Result<SyntheticMotion> motion = make_motion(options.motion, **body,
+                                                     {.num_frames = options.frames,
+                                                      .fps = options.fps,
+                                                      .amplitude_deg = options.amplitude_deg,
+                                                      .period_s = options.period_s,
+                                                      .seed = common.seed});
+  if (!motion) return motion.failure();
+  if (motion->mean_residual_deg) {
+    outcome.json["retargeting_deg"] = {{"mean", *motion->mean_residual_deg}, {"max", motion->max_residual_deg.value_or(0)}};
+  }
+  Result<SyntheticSequence> sequence = make_sequence(*body, *motion, scene);
+  if (!sequence || options.camera.file.empty()) return sequence;
+  const Result<void> used = use_camera_file(options.camera, *sequence);
+  if (!used) return used.failure();
+  return sequence;
+}
+
+Result<Outcome> run_synth(const CLI::App& app, const SynthOptions& options, const CommonOptions& common, Console& console) {
+  if (options.out.empty()) throw UsageError("--out is missing");
+  if (!options.camera.file.empty() && !options.views.empty()) throw UsageError("--view: not together with --camera");
+  if (options.lead_in > 0 && !options.colour) throw UsageError("--lead-in: needs --colour");
+  Result<ResultDirectory> directory = ResultDirectory::create(options.out);
+  if (!directory) return directory.failure();
+  Outcome outcome;
+  outcome.json = run_facts(common);
+  const Result<SyntheticSequence> sequence = make(options, common, console, outcome);
+  if (!sequence) return sequence.failure();
+
+  std::optional<ColourOptions> colour;
+  if (options.colour) {
+    const Result<Backdrop> backdrop = parse_backdrop(options.backdrop);
+    if (!backdrop) throw UsageError(fmt::format("--backdrop: {}", backdrop.error().message));
+    colour = ColourOptions{.backdrop = *backdrop, .seed = common.seed};
+  }
+  const Result<int> frames = write_sequence(directory->path(), *sequence, colour, &console);
+  if (!frames) return frames.failure();
+
+  outcome.interrupted = Console::interrupted();
+  outcome.json["model"] = options.model;
+  outcome.json["body"] = sequence->body->name;
+  outcome.json["frames"] = *frames;
+  outcome.json["lead_in"] = sequence->lead_in;
+  outcome.json["fps"] = sequence->fps;
+  outcome.json["cameras"] = nlohmann::ordered_json::array();
+  for (const PinholeCamera& camera : sequence->cameras) outcome.json["cameras"].push_back(camera.name);
+  outcome.json["distance_m"] = sequence->distance_m;
+  outcome.json["out"] = options.out;
+  outcome.text = fmt::format("{} frames in {}, camera at {:.2f} m", *frames, options.out, sequence->distance_m);
+  const Result<void> kept = write_option_file(directory->path() / "config.toml", app, {});
+  if (!kept) return kept.failure();
+  const Result<void> written = write_json(directory->path() / "run.json", outcome.json);
+  if (!written) return written.failure();
+  if (outcome.interrupted) {
+    directory->keep();
+    return outcome;
+  }
+  const Result<void> done = directory->commit();
+  if (!done) return done.failure();
+  return outcome;
+}
+
+}  // namespace
+
+Command add_synth(CLI::App& program, const CommonOptions& common) {
+  const auto options = std::make_shared<SynthOptions>();
+  CLI::App* const app = program.add_subcommand("synth", "Render a sequence with ground truth");
+  app->add_option("--out", options->out, "Directory for the sequence");
+  add_model_option(*app, options->model);
+  app->add_option("--motion", options->motion, "FILE.bvh, static, dof:INDEX, circle, sway or random")->capture_default_str();
+  app->add_option("--amplitude-deg", options->amplitude_deg, "How far sway, circle and random go")->check(CLI::Range(0.0, 180.0));
+  app->add_option("--period", options->period_s, "Seconds a swing takes")->check(CLI::Range(0.01, 1e6));
+  app->add_option("--frames", options->frames, "Of the motion; default 80, or the whole of a BVH file")->check(CLI::Range(1, 1'000'000));
+  app->add_option("--fps", options->fps, "Frames a second")->capture_default_str()->check(CLI::Range(0.1, 10000.0));
+  app->add_option("--view", options->views, "front, side, or degrees round the subject; repeat it for several cameras")
+      ->allow_extra_args(false);
+  app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
+  add_camera_options(*app, options->camera);
+  app->add_flag("--colour", options->colour, "Also a shaded video.mp4");
+  app->add_option("--backdrop", options->backdrop, "What is behind: textured or green")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"textured", "green"}));
+  app->add_option("--lead-in", options->lead_in, "Frames of the video before the subject is there")->check(CLI::Range(0, 100'000));
+  app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
+  return {app, [app, options, &common](Console& console) -> Result<Outcome> {
+            if (!options->config.empty()) {
+              const Result<void> applied = apply_option_file(options->config, *app);
+              if (!applied) return applied.failure();
+            }
+            return run_synth(*app, *options, common, console);
+          }};
+}
+
+}  // namespace silpose::app

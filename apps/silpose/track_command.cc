@@ -1,0 +1,324 @@
+// silpose track: from a clip to poses: observations in, tracker steps, each recorded; then the files of the result.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "apps/silpose/body_choice.h"
+#include "apps/silpose/command.h"
+#include "apps/silpose/observation_source.h"
+#include "apps/silpose/option_file.h"
+#include "apps/silpose/result_directory.h"
+#include "apps/silpose/run_facts.h"
+#include "apps/silpose/track_writer.h"
+#include "sadb/store/memory_store.h"
+#include "silpose/base/clock.h"
+#include "silpose/report/report_page.h"
+#include "silpose/track/tracker.h"
+
+namespace silpose::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct TrackOptions {
+  InputOptions input;
+  CameraOptions camera;
+  std::string model = "human", out, config, init = "descent", metric = "pixel-count", root = "tracked", estimate;
+  TrackerOptions tracker;
+};
+
+// Seconds by stage; `background` is what was spent before the first frame.
+struct StageSeconds {
+  double background = 0, decode = 0, segment = 0, propagate = 0, likelihood = 0, resample = 0, write = 0;
+
+  [[nodiscard]] std::vector<std::pair<std::string, double>> list() const {
+    return {{"background", background}, {"decode", decode},     {"segment", segment}, {"propagate", propagate},
+            {"likelihood", likelihood}, {"resample", resample}, {"write", write}};
+  }
+};
+
+// The pose of a frame in a CSV of poses, or its first where it does not have that frame.
+Result<std::vector<double>> read_initial_pose(const std::string& file, const Skeleton& skeleton, int64_t frame) {
+  const Result<PoseTable> table = read_poses(file, skeleton);
+  if (!table) return table.failure();
+  if (table->rows.empty()) return error("{}: no pose in it", file);
+  for (const PoseTable::Row& row : table->rows) {
+    if (row.frame == frame) return row.values;
+  }
+  return table->rows.front().values;
+}
+
+Result<Tracker> make_tracker(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
+                             std::vector<PinholeCamera> cameras, uint64_t seed, int64_t first_frame) {
+  TrackerOptions tracker = options.tracker;
+  tracker.body = std::move(body);
+  tracker.cameras = std::move(cameras);
+  tracker.seed = seed;
+  tracker.root_fixed = options.root == "fixed";
+  if (options.estimate == "mean") tracker.estimate = Estimate::kMean;
+  if (options.estimate == "mode") tracker.estimate = Estimate::kMode;
+  if (options.estimate == "cluster") tracker.estimate = Estimate::kCluster;
+  if (options.init != "descent") {
+    Result<std::vector<double>> pose = read_initial_pose(options.init, tracker.body->skeleton, first_frame);
+    if (!pose) return pose.failure();
+    tracker.initial_pose = std::move(*pose);
+  }
+  try {
+    return Tracker(std::move(tracker));
+  } catch (const std::invalid_argument& wrong) {
+    throw UsageError(wrong.what());
+  }
+}
+
+// The tracker's options as they came out, for config.toml.
+std::map<std::string, std::string> chosen_options(const TrackerOptions& used) {
+  std::map<std::string, std::string> chosen;
+  const auto keep = [&](const char* name, const auto& value) {
+    if (value) chosen[name] = fmt::format("{}", *value);
+  };
+  keep("particles", used.num_particles);
+  keep("layers", used.num_layers);
+  keep("motion", used.motion);
+  keep("sigma-deg", used.sigma_deg);
+  keep("resampling", used.resampling);
+  keep("regenerate", used.regenerate);
+  keep("sharpness", used.sharpness);
+  if (used.estimate) {
+    chosen["estimate"] = *used.estimate == Estimate::kMean ? "mean" : *used.estimate == Estimate::kMode ? "mode" : "cluster";
+  }
+  return chosen;
+}
+
+Json figure(double mean, double std) {
+  if (std::isnan(mean)) return nullptr;
+  return {{"mean", mean}, {"std", std}};
+}
+
+class TrackRun {
+ public:
+  TrackRun(const CLI::App& app, const TrackOptions& options, const CommonOptions& common, Console& console)
+      : app_(app), options_(options), common_(common), console_(console) {}
+
+  Result<Outcome> run() {
+    Result<ResultDirectory> directory = ResultDirectory::create(options_.out);
+    if (!directory) return directory.failure();
+    Result<std::shared_ptr<const BodyModel>> body = choose_body(options_.model, console_);
+    if (!body) return body.failure();
+    body_ = *body;
+    if (options_.init != "descent") {  // told before the clip is read
+      const Result<std::vector<double>> pose = read_initial_pose(options_.init, body_->skeleton, 0);
+      if (!pose) return pose.failure();
+    }
+    Result<std::vector<PinholeCamera>> cameras = prepare_cameras();
+    if (!cameras) return cameras.failure();
+    Result<ObservationSource> source = ObservationSource::open(options_.input, console_);
+    if (!source) return source.failure();
+    seconds_.background = source->learning_s();
+
+    const Result<void> tracked = track(*source, *cameras, directory->path());
+    if (!tracked) return tracked.failure();
+    Result<Outcome> outcome = write_result(*source, *cameras, *directory);
+    if (!outcome) return outcome.failure();
+    if (interrupted_) {
+      directory->keep();
+      return outcome;
+    }
+    const Result<void> done = directory->commit();
+    if (!done) return done.failure();
+    return outcome;
+  }
+
+ private:
+  // Cameras for the videos, before any background is learned.
+  Result<std::vector<PinholeCamera>> prepare_cameras() {
+    if (options_.input.videos.empty()) throw UsageError("VIDEO is missing");
+    const Result<Video> video = open_video(options_.input.videos, {.default_fps = options_.input.default_fps});
+    if (!video) return video.failure();
+    std::vector<PictureSize> sizes;
+    for (int c = 0; c < video->num_cameras(); ++c) sizes.push_back({video->width(c), video->height(c)});
+    Result<CameraChoice> choice = choose_cameras(options_.camera, sizes);
+    if (!choice) return choice.failure();
+    warnings_ = choice->warnings;
+    return choice->cameras;
+  }
+
+  Result<void> track(ObservationSource& source, const std::vector<PinholeCamera>& cameras, const std::filesystem::path& folder) {
+    const Stopwatch wall;
+    TrackWriter writer(folder, body_, cameras, source.video().fps());
+    std::vector<std::string> names;
+    for (const PinholeCamera& camera : cameras) names.push_back(camera.name);
+    const auto board = std::make_shared<sadb::MemoryStore>();
+    // The masks go to files as they come; kept in memory too, they would bound how long a clip may be.
+    TrackRecorder recorder(board, body_->skeleton.name(), names, {.masks = false});
+    std::optional<Tracker> tracker;
+    int64_t frames = 0;
+    while (!interrupted_) {
+      const Result<std::optional<Instant>> next = source.next();
+      if (!next) return next.failure();
+      if (!next->has_value()) break;
+      const Instant& instant = **next;
+      if (!tracker) {
+        Result<Tracker> made = make_tracker(options_, body_, cameras, common_.seed, instant.frame.index);
+        if (!made) return made.failure();
+        tracker.emplace(std::move(*made));
+        used_ = tracker->options();
+      }
+      const StepReport report = tracker->step(instant.observations, instant.frame.index, instant.frame.time_ns);
+      const Stopwatch writing;
+      const Result<void> recorded = recorder.put(report);
+      if (!recorded) return recorded;
+      const Result<void> written = writer.add_frame(instant, report);
+      if (!written) return written;
+      seconds_.write += writing.seconds();
+      seconds_.decode += instant.decode_s;
+      seconds_.segment += instant.segment_s;
+      seconds_.propagate += report.seconds.propagate;
+      seconds_.likelihood += report.seconds.likelihood;
+      seconds_.resample += report.seconds.resample;
+      interrupted_ = !console_.update("tracking", ++frames, source.num_expected());
+    }
+    interrupted_ = interrupted_ || Console::interrupted();
+    if (frames == 0) {
+      if (interrupted_) return error("interrupted before the first frame");
+      return error("{}: no frame in the stretch asked for", source.video().name());
+    }
+    loop_s_ = wall.seconds();
+    Result<TrackRecording> recording = read_recording(*board);
+    if (!recording) return recording.failure();
+    recording_ = std::move(*recording);
+    return writer.write_recording(recording_);
+  }
+
+  Result<Outcome> write_result(const ObservationSource& source, const std::vector<PinholeCamera>& cameras,
+                               const ResultDirectory& directory) {
+    const RecordingSummary summary = summarise(recording_);
+    const std::vector<std::string> of_input = source.warnings();
+    warnings_.insert(warnings_.end(), of_input.begin(), of_input.end());
+    if (summary.frames_tracked == 0) warnings_.push_back("no person was seen: there is no pose in this result");
+    for (const std::string& warning : warnings_) console_.warning(warning);
+
+    Outcome outcome;
+    Json& run = outcome.json;
+    run = run_facts(common_);
+    run["model"] = options_.model;
+    run["body"] = body_->name;
+    run["frames"] = summary.frames;
+    run["frames_tracked"] = summary.frames_tracked;
+    run["frames_coasted"] = summary.frames_coasted;
+    run["stages_s"] = Json::object();
+    for (const auto& [stage, s] : seconds_.list()) run["stages_s"][stage] = s;
+    run["frames_per_second"] = static_cast<double>(summary.frames) / loop_s_;
+    run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
+    run["background"] = source.background();
+    run["cameras"] = Json::array();
+    for (const PinholeCamera& camera : cameras) run["cameras"].push_back(camera.name);
+    run["warnings"] = warnings_;
+    run["out"] = options_.out;
+    if (interrupted_) run["error"] = fmt::format("interrupted; {}.partial holds the frames done", options_.out);
+
+    const std::filesystem::path& folder = directory.path();
+    for (const Result<void>& written :
+         {write_option_file(folder / "config.toml", app_, chosen_options(used_)), write_json(folder / "run.json", run),
+          write_report(folder / "report.html", report_input(folder, source, summary))}) {
+      if (!written) return written.failure();
+    }
+    outcome.interrupted = interrupted_;
+    if (interrupted_) console_.error(run["error"].get<std::string>());
+    outcome.text = fmt::format("{} frames, {} tracked, {} coasted; {:.1f} frames a second\n", summary.frames,
+                               summary.frames_tracked, summary.frames_coasted, run["frames_per_second"].get<double>());
+    if (summary.frames_tracked > 0) {
+      outcome.text += fmt::format("visual accuracy {:.3f} \u00b1 {:.3f}\n", summary.visual_accuracy_mean,
+                                  summary.visual_accuracy_std);
+    }
+    outcome.text += fmt::format("overlay: {0}/overlay.mp4\nreport:  {0}/report.html",
+                                (interrupted_ ? directory.path() : directory.final_path()).string());
+    return outcome;
+  }
+
+  [[nodiscard]] ReportInput report_input(const std::filesystem::path& folder, const ObservationSource& source,
+                                         const RecordingSummary& summary) const {
+    ReportInput report;
+    report.title = std::filesystem::path(source.video().name()).filename().string();
+    if (report.title.empty()) report.title = source.video().name();
+    report.recording = &recording_;
+    report.skeleton = &body_->skeleton;
+    report.overlay_video = folder / "overlay.mp4";
+    report.fps = source.video().fps();
+    report.stages_s = seconds_.list();
+    report.warnings = warnings_;
+    report.facts = {{"Command", common_.command_line},
+                    {"Version", SILPOSE_VERSION},
+                    {"Machine", machine_name()},
+                    {"Body", body_->name},
+                    {"Silhouettes from", source.background()},
+                    {"Camera", options_.camera.file.empty() ? "assumed" : options_.camera.file}};
+    for (const auto& [name, value] : chosen_options(used_)) report.facts.emplace_back(name, value);
+    report.facts.emplace_back("Seed", std::to_string(common_.seed));
+    report.facts.emplace_back("Frames a second", fmt::format("{:.2f}", static_cast<double>(summary.frames) / loop_s_));
+    return report;
+  }
+
+  const CLI::App& app_;
+  const TrackOptions& options_;
+  const CommonOptions& common_;
+  Console& console_;
+  std::shared_ptr<const BodyModel> body_;
+  TrackRecording recording_;
+  TrackerOptions used_;
+  StageSeconds seconds_;
+  std::vector<std::string> warnings_;
+  double loop_s_ = 0;
+  bool interrupted_ = false;
+};
+
+void add_tracker_options(CLI::App& app, TrackOptions& options) {
+  TrackerOptions& tracker = options.tracker;
+  app.add_option("--preset", tracker.preset, "default, or thesis: two plain filters, root and pose")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"default", "thesis"}));
+  app.add_option("--particles", tracker.num_particles, "Particles in a layer")->check(CLI::Range(1, 1'000'000));
+  app.add_option("--layers", tracker.num_layers, "Annealing layers; 1 is a plain filter")->check(CLI::Range(1, 1000));
+  app.add_option("--motion", tracker.motion, "How particles move between frames")
+      ->check(CLI::IsMember({"diffusion", "first-order-augmented"}));
+  app.add_option("--sigma-deg", tracker.sigma_deg, "Noise of a typical joint angle in 1/30 s")->check(CLI::Range(1e-3, 180.0));
+  app.add_option("--resampling", tracker.resampling, "Which particles go on")->check(CLI::IsMember({"systematic", "comb"}));
+  app.add_option("--resample-below", tracker.resample_below, "Only when n_eff is below this part of the particles")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 1.0));
+  app.add_option("--regenerate", tracker.regenerate, "Part of the comb's particles that is made anew")->check(CLI::Range(0.0, 0.99));
+  app.add_option("--sharpness", tracker.sharpness, "How strongly better silhouettes are preferred")->check(CLI::Range(1e-3, 1e6));
+  app.add_option("--metric", options.metric, "How silhouettes are compared")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"pixel-count"}));
+  app.add_option("--root", options.root, "tracked, or fixed where it starts")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"tracked", "fixed"}));
+  app.add_option("--init", options.init, "First pose: descent, or a poses.csv (its row of the first frame)")->capture_default_str();
+  app.add_option("--estimate", options.estimate, "Which pose is reported: mean, mode or cluster")
+      ->check(CLI::IsMember({"mean", "mode", "cluster"}));
+}
+
+}  // namespace
+
+Command add_track(CLI::App& program, const CommonOptions& common) {
+  const auto options = std::make_shared<TrackOptions>();
+  CLI::App* const app = program.add_subcommand("track", "Track a person: VIDEO... --out DIR");
+  add_input_options(*app, options->input);
+  app->add_option("--out", options->out, "Directory for the result");
+  add_model_option(*app, options->model);
+  add_camera_options(*app, options->camera);
+  add_tracker_options(*app, *options);
+  app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
+  return {app, [app, options, &common](Console& console) -> Result<Outcome> {
+            if (!options->config.empty()) {
+              const Result<void> applied = apply_option_file(options->config, *app);
+              if (!applied) return applied.failure();
+            }
+            if (options->out.empty()) throw UsageError("--out is missing");
+            if (options->input.videos.empty()) throw UsageError("VIDEO is missing");
+            return TrackRun(*app, *options, common, console).run();
+          }};
+}
+
+}  // namespace silpose::app

@@ -1,0 +1,56 @@
+#include "apps/silpose/track_writer.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "silpose/exchange/bvh.h"
+#include "silpose/geometry/calibration_file.h"
+#include "silpose/image/image_file.h"
+#include "silpose/render/draw_overlay.h"
+
+namespace silpose::app {
+
+TrackWriter::TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
+                         std::vector<PinholeCamera> cameras, double fps)
+    : directory_(std::move(directory)), body_(std::move(body)), cameras_(std::move(cameras)), fps_(fps) {}
+
+Result<void> TrackWriter::add_frame(const Instant& instant, const StepReport& report) {
+  for (size_t c = 0; c < cameras_.size(); ++c) {
+    const auto folder = directory_ / (cameras_.size() == 1 ? "masks" : "masks_" + cameras_[c].name);
+    std::error_code failed;
+    std::filesystem::create_directories(folder, failed);
+    const Result<void> written =
+        write_mask(folder / fmt::format("{:06}.png", instant.frame.index), instant.observations[c].mask);
+    if (!written) return written;
+  }
+  ByteImage picture = instant.frame.images[0];
+  if (!report.pose.empty()) draw_overlay(picture, *body_, cameras_[0], report.pose);
+  if (!overlay_) {
+    Result<VideoWriter> created = create_video(directory_ / "overlay.mp4", picture.width(), picture.height(), fps_);
+    if (!created) return created.failure();
+    overlay_.emplace(std::move(*created));
+  }
+  return overlay_->write(picture);
+}
+
+Result<void> TrackWriter::write_recording(const TrackRecording& recording) {
+  if (overlay_) overlay_->close();
+  const Skeleton& skeleton = body_->skeleton;
+  const std::vector<std::vector<double>> poses = even_poses(recording);
+  const Result<void> files[] = {
+      write_poses(directory_ / "poses.csv", skeleton, pose_table(recording)),
+      write_poses(directory_ / "poses_normalised.csv", skeleton, normalised_pose_table(recording, skeleton),
+                  PoseUnits::kNormalised),
+      write_poses(directory_ / "spread.csv", skeleton, spread_table(recording)),
+      write_joints(directory_ / "joints.csv", joint_table(recording, *body_, cameras_[0])),
+      write_bvh(directory_ / "motion.bvh", clip_from_poses(skeleton, poses, fps_, body_->end_points)),
+      write_cameras(directory_ / "camera.toml", cameras_),
+  };
+  for (const Result<void>& file : files) {
+    if (!file) return file;
+  }
+  return {};
+}
+
+}  // namespace silpose::app
