@@ -40,8 +40,9 @@ std::string file_name_of(std::string model) {
 
 void add_model_option(CLI::App& command, std::string& model) {
   command
-      .add_option("--model", model,
-                  "The body: human, human:age=30,sex=f,height=1.62,weight=58,muscle=0.5 (years, m, kg), or a .body file")
+      .add_option(
+          "--model", model,
+          "The body: human, human:age=30,sex=f,height=1.62,weight=58,muscle=0.5 (years, m, kg), or a .body file")
       ->capture_default_str();
 }
 
@@ -57,7 +58,8 @@ bool is_up_to_date(const fs::path& body_file) {
   std::error_code failed;
   const auto made = fs::last_write_time(body_file, failed);
   if (failed) return false;
-  for (const fs::path& source : {fs::read_symlink("/proc/self/exe", failed), data_directory() / "makehuman/SHA256SUMS"}) {
+  for (const fs::path& source :
+       {fs::read_symlink("/proc/self/exe", failed), data_directory() / "makehuman/SHA256SUMS"}) {
     const auto changed = fs::last_write_time(source, failed);
     if (!failed && changed > made) return false;
   }
@@ -83,7 +85,8 @@ Result<std::shared_ptr<const BodyModel>> choose_body(const std::string& model, C
     return std::make_shared<const BodyModel>(std::move(*body));
   }
   const std::string person = is_human(model) ? without_dof(model) : model;
-  const fs::path kept = person == "human" ? data_directory() / "human.body" : data_directory() / "bodies" / file_name_of(person);
+  const fs::path kept =
+      person == "human" ? data_directory() / "human.body" : data_directory() / "bodies" / file_name_of(person);
   if (is_human(model) && is_up_to_date(kept)) {
     Result<BodyModel> body = load_body(kept);
     if (body) return std::make_shared<const BodyModel>(std::move(*body));

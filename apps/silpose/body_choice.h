@@ -1,6 +1,5 @@
-// Which body: `--model human[:key=value,...]` or a .body file. Bodies built from the MakeHuman data are kept in the data
-// directory, so that the next run loads them in milliseconds.
-// Threads: the main thread only.
+// Which body: `--model human[:key=value,...]` or a .body file. Bodies built from the MakeHuman data are kept in the
+// data directory, so that the next run loads them in milliseconds. Threads: the main thread only.
 #pragma once
 
 #include <CLI/CLI.hpp>

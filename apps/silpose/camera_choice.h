@@ -28,8 +28,8 @@ struct PictureSize {
   int width = 0, height = 0;
 };
 
-// One camera a picture size, in order; without sizes all that the file, or --camera-name, names. Errors: those of the file; a name that is not in it; another number of cameras;
-// a camera calibrated for another size.
+// One camera a picture size, in order; without sizes all that the file, or --camera-name, names. Errors: those of the
+// file; a name that is not in it; another number of cameras; a camera calibrated for another size.
 Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<PictureSize>& sizes);
 
 }  // namespace silpose::app

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "silpose/base/result.h"
 #include "apps/silpose/console.h"
+#include "silpose/base/result.h"
 
 namespace silpose::app {
 
@@ -35,6 +35,7 @@ struct Outcome {
   nlohmann::ordered_json json;  // what --json prints
   std::string text;             // what is printed otherwise, without the last newline
   bool interrupted = false;     // exit 130
+  bool is_answer = false;       // the text is what was asked for: printed under --quiet too
 };
 
 struct Command {

@@ -35,6 +35,7 @@ Result<Outcome> run_evaluate(const EvaluateCommandOptions& options, Console& con
   if (!evaluation) return evaluation.failure();
 
   Outcome outcome;
+  outcome.is_answer = true;
   outcome.json["frames"] = evaluation->frames;
   outcome.json["frames_missing"] = evaluation->frames_missing;
   outcome.text = fmt::format("{} frames, {} missing from the result", evaluation->frames, evaluation->frames_missing);

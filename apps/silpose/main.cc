@@ -38,7 +38,7 @@ int run_command(const Command& command, const CommonOptions& common, Console& co
     }
     if (common.json) {
       fmt::print("{}\n", outcome->json.dump(2));
-    } else if (!outcome->text.empty()) {
+    } else if (!outcome->text.empty() && (!common.quiet || outcome->is_answer)) {
       fmt::print("{}\n", outcome->text);
     }
     return outcome->interrupted ? kInterrupted : kSuccess;
@@ -60,7 +60,7 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", SILPOSE_VERSION);
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
-  std::vector<Command> commands = {add_track(program, common),   add_synth(program, common),
+  std::vector<Command> commands = {add_track(program, common), add_synth(program, common),
                                    add_evaluate(program, common), add_segment(program, common),
                                    add_render(program, common)};
   for (Command& command : add_model(program, common)) commands.push_back(std::move(command));

@@ -36,6 +36,7 @@ std::string summary_of(const BodyModel& body) {
 
 Result<Outcome> list_models() {
   Outcome outcome;
+  outcome.is_answer = true;
   outcome.json["models"] = {"human"};
   outcome.text = "human    20 joints, 37 DOF; human:age=YEARS,sex=f|m|0..1,height=M,weight=KG,muscle=0..1";
   nlohmann::ordered_json kept = nlohmann::json::array();
@@ -55,6 +56,7 @@ Result<Outcome> inspect_model(const std::string& model, Console& console) {
   const auto body = choose_body(model, console);
   if (!body) return body.failure();
   Outcome outcome;
+  outcome.is_answer = true;
   outcome.json = facts_of(**body);
   outcome.text = summary_of(**body);
   for (const auto& [key, value] : (*body)->facts) outcome.text += fmt::format("\n  {}: {}", key, value);
@@ -86,8 +88,11 @@ Result<Outcome> write_model(const BodyModel& body, const std::string& out) {
 CLI::Option* add_body_file_option(CLI::App& command, std::string& out) {
   return command.add_option("--out", out, "The .body file to write")
       ->required()
-      ->check(CLI::Validator([](const std::string& path) { return fs::path(path).extension() == ".body" ? "" : path + ": does not end in .body"; },
-                             "FILE.body"));
+      ->check(CLI::Validator(
+          [](const std::string& path) {
+            return fs::path(path).extension() == ".body" ? "" : path + ": does not end in .body";
+          },
+          "FILE.body"));
 }
 
 }  // namespace
@@ -106,13 +111,16 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions&) {
   CLI::App* const build = model->add_subcommand("build", "Build a body and write it as a .body file");
   add_model_option(*build, options->model);
   add_body_file_option(*build, options->out);
-  build->add_flag("--if-older", options->if_older, "Only where the file is missing or older than the program or the data");
+  build->add_flag("--if-older", options->if_older,
+                  "Only where the file is missing or older than the program or the data");
   CLI::App* const inspect = model->add_subcommand("inspect", "What a body is made of, and the limits of its DOF");
   inspect->add_option("MODEL,--model", options->model, "As --model elsewhere")->capture_default_str();
   CLI::App* const lod = model->add_subcommand("lod", "The same body with fewer vertices");
   add_model_option(*lod, options->model);
   add_body_file_option(*lod, options->out);
-  lod->add_option("--vertices", options->vertices, "About how many")->capture_default_str()->check(CLI::Range(100, 20000));
+  lod->add_option("--vertices", options->vertices, "About how many")
+      ->capture_default_str()
+      ->check(CLI::Range(100, 20000));
 
   return {
       {list, [](Console&) { return list_models(); }},
@@ -120,7 +128,7 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions&) {
        [options](Console& console) -> Result<Outcome> {
          if (options->if_older && is_up_to_date(options->out)) {
            const Result<BodyModel> kept = load_body(options->out);
-           if (kept) return Outcome{facts_of(*kept), summary_of(*kept), false};
+           if (kept) return Outcome{.json = facts_of(*kept), .text = summary_of(*kept)};
          }
          const Result<BodyModel> body = build_body(options->model, console);
          if (!body) return body.failure();

@@ -26,9 +26,11 @@ std::string of_camera(const std::string& option, const std::vector<std::string>&
 
 Box parse_region(const std::string& text) {
   const std::vector<double> numbers = parse_numbers("--region", text, 4);
-  const bool fits = std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::abs(n) < 1e6 && n == std::floor(n); });
+  const bool fits =
+      std::all_of(numbers.begin(), numbers.end(), [](double n) { return std::abs(n) < 1e6 && n == std::floor(n); });
   const auto whole = [&](size_t i) { return static_cast<int>(numbers[i]); };
-  if (!fits || whole(2) < 1 || whole(3) < 1) throw UsageError(fmt::format("--region: {} is not x,y,w,h in whole pixels", text));
+  if (!fits || whole(2) < 1 || whole(3) < 1)
+    throw UsageError(fmt::format("--region: {} is not x,y,w,h in whole pixels", text));
   return {whole(0), whole(1), whole(2), whole(3)};
 }
 
@@ -88,11 +90,12 @@ void add_input_options(CLI::App& command, InputOptions& options) {
   command.add_option("--min-blob", options.min_blob_px, "Pixels below which a blob does not count")
       ->capture_default_str()
       ->check(CLI::Range(0, 100'000'000));
-  command.add_option("--fps", options.default_fps, "Frames a second of input that carries no rate")
-      ->capture_default_str()
+  command
+      .add_option("--fps", options.default_fps, "Frames a second of input that carries no rate (30, with a warning)")
       ->check(CLI::Range(0.1, 10000.0));
   command.add_option("--start", options.start_s, "Seconds into the clip to begin at")->check(CLI::NonNegativeNumber);
-  command.add_option("--end", options.end_s, "Seconds into the clip to end at, included")->check(CLI::NonNegativeNumber);
+  command.add_option("--end", options.end_s, "Seconds into the clip to end at, included")
+      ->check(CLI::NonNegativeNumber);
 }
 
 Result<ObservationSource> ObservationSource::open(const InputOptions& options, Console& console) {
@@ -102,12 +105,13 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
   }
   ObservationSource source;
   source.options_ = options;
-  Result<Video> video = open_video(options.videos, {.default_fps = options.default_fps});
+  Result<Video> video = open_video(options.videos, options.video_options());
   if (!video) return video.failure();
   source.video_ = std::make_unique<Video>(std::move(*video));
   const Video& opened = *source.video_;
-  if (opened.fps_assumed()) {
-    source.warnings_.push_back(fmt::format("{}: carries no frame rate, {} a second assumed", opened.name(), opened.fps()));
+  if (opened.fps_assumed() && !options.default_fps) {
+    source.warnings_.push_back(
+        fmt::format("{}: carries no frame rate, {} a second assumed", opened.name(), opened.fps()));
   }
   // A quarter of a frame's time makes up for rounded time stamps.
   source.first_frame_ = static_cast<int64_t>(std::ceil(options.start_s.value_or(0) * opened.fps() - 0.25));
@@ -121,7 +125,7 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
     segmenter.kind = options.segmenter;
     segmenter.background = of_camera("--background", options.backgrounds, camera, count, "auto");
     segmenter.masks = of_camera("--masks", options.masks, camera, count, "");
-    segmenter.default_fps = options.default_fps;
+    segmenter.default_fps = options.video_options().default_fps;
     const Result<CleanUpOptions> clean_up = clean_up_options(options, opened, camera);
     if (!clean_up) return clean_up.failure();
     segmenter.clean_up = *clean_up;

@@ -22,7 +22,8 @@ struct InputOptions {
   std::string segmenter = "auto";
   std::vector<std::string> masks, backgrounds, regions, garbage_masks;  // one for all, or one a camera
   int grow_px = 0, min_blob_px = 0;
-  double default_fps = 30;
+  std::optional<double> default_fps;  // 30 and a warning where it is needed and not given
+  [[nodiscard]] VideoOptions video_options() const { return {.default_fps = default_fps.value_or(30)}; }
   std::optional<double> start_s, end_s;
 };
 
@@ -48,8 +49,8 @@ class ObservationSource {
   [[nodiscard]] std::vector<PictureSize> sizes() const;
   // How many instants next() will give, where that is known; 0 otherwise.
   [[nodiscard]] int64_t num_expected() const;
-  [[nodiscard]] std::string background() const;              // "background auto", "masks", ... of each camera
-  [[nodiscard]] std::vector<std::string> warnings() const;   // whole only after the last next()
+  [[nodiscard]] std::string background() const;                    // "background auto", "masks", ... of each camera
+  [[nodiscard]] std::vector<std::string> warnings() const;         // whole only after the last next()
   [[nodiscard]] double learning_s() const { return learning_s_; }  // time spent before the first instant
 
  private:

@@ -34,7 +34,8 @@ Result<std::vector<double>> read_row(const std::string& text, const Skeleton& sk
   if (colon != std::string::npos && !std::filesystem::exists(text)) {
     const char* const end = text.data() + text.size();
     const auto [rest, bad] = std::from_chars(text.data() + colon + 1, end, row);
-    if (bad != std::errc() || rest != end) throw UsageError(fmt::format("--pose {}: {} is not a row", text, text.substr(colon + 1)));
+    if (bad != std::errc() || rest != end)
+      throw UsageError(fmt::format("--pose {}: {} is not a row", text, text.substr(colon + 1)));
     file = text.substr(0, colon);
   }
   const Result<PoseTable> table = read_poses(file, skeleton);
@@ -72,7 +73,8 @@ Result<void> write_depth(const std::filesystem::path& path, const Image<float>& 
   cv::Mat millimetres(depth.height(), depth.width(), CV_16UC1);
   for (int y = 0; y < depth.height(); ++y) {
     for (int x = 0; x < depth.width(); ++x) {
-      millimetres.at<uint16_t>(y, x) = static_cast<uint16_t>(std::clamp(std::lround(depth.at(x, y) * 1000), 0L, 65535L));
+      millimetres.at<uint16_t>(y, x) =
+          static_cast<uint16_t>(std::clamp(std::lround(depth.at(x, y) * 1000), 0L, 65535L));
     }
   }
   try {

@@ -16,14 +16,15 @@ namespace fs = std::filesystem;
 
 // Everything that track, synth and segment put into a directory.
 constexpr std::array<std::string_view, 12> kFiles = {
-    "poses.csv",   "poses_normalised.csv", "spread.csv",  "joints.csv", "camera.toml", "overlay.mp4",
-    "report.html", "config.toml",          "motion.bvh",  "run.json",   "video.mp4",   "background.png"};
+    "poses.csv",   "poses_normalised.csv", "spread.csv", "joints.csv", "camera.toml", "overlay.mp4",
+    "report.html", "config.toml",          "motion.bvh", "run.json",   "video.mp4",   "background.png"};
 
 bool is_mask_folder(const fs::path& folder) {
   std::error_code failed;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
     const std::string stem = entry.path().stem().string();
-    const bool digits = !stem.empty() && std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; });
+    const bool digits =
+        !stem.empty() && std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; });
     if (!digits || entry.path().extension() != ".png" || !entry.is_regular_file()) return false;
   }
   return !failed;
@@ -72,7 +73,8 @@ Result<ResultDirectory> ResultDirectory::create(const fs::path& directory) {
     if (!fs::exists(status)) continue;
     if (!fs::is_directory(status)) return error("{}: is there and is not a directory", path.string());
     const std::optional<std::string> foreign = foreign_content(path, path == result.final_);
-    if (foreign) return error("{}: holds something else than a result of silpose ({}); left alone", path.string(), *foreign);
+    if (foreign)
+      return error("{}: holds something else than a result of silpose ({}); left alone", path.string(), *foreign);
   }
   fs::remove_all(partial, failed);
   fs::create_directories(partial, failed);

@@ -41,7 +41,8 @@ class ResultDirectory {
   std::filesystem::path final_, partial_;  // partial_ is empty once it is renamed or kept
 };
 
-// What directory holds that silpose does not write; nothing when it could be replaced. An absent or empty directory can.
+// What directory holds that silpose does not write; nothing when it could be replaced. An absent or empty directory
+// can.
 std::optional<std::string> foreign_content(const std::filesystem::path& directory, bool must_be_whole);
 
 // Writes a single file beside its final name, then renames it: `write` gets the temporary path, which ends in the same

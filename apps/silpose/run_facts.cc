@@ -22,7 +22,8 @@ std::string machine_name() {
   }
   utsname system{};
   uname(&system);
-  return fmt::format("{}, {} threads, {} {}", processor, std::thread::hardware_concurrency(), system.sysname, system.release);
+  return fmt::format("{}, {} threads, {} {}", processor, std::thread::hardware_concurrency(), system.sysname,
+                     system.release);
 }
 
 nlohmann::ordered_json run_facts(const CommonOptions& common) {

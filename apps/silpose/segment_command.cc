@@ -18,7 +18,8 @@ struct SegmentOptions {
   std::string out, config;
 };
 
-Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, const CommonOptions& common, Console& console) {
+Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, const CommonOptions& common,
+                            Console& console) {
   if (options.out.empty()) throw UsageError("--out is missing");
   if (options.input.videos.size() > 1) throw UsageError("VIDEO: one at a time");
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
@@ -35,7 +36,8 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
     if (!instant) return instant.failure();
     if (!instant->has_value()) break;
     const Instant& now = **instant;
-    const auto written = write_mask(directory->path() / "masks" / fmt::format("{:06}.png", now.frame.index), now.observations[0].mask);
+    const auto written =
+        write_mask(directory->path() / "masks" / fmt::format("{:06}.png", now.frame.index), now.observations[0].mask);
     if (!written) return written.failure();
     ++frames;
     empty += now.observations[0].trust.nothing_found ? 1 : 0;
@@ -46,7 +48,7 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
   }
   stopped = stopped || Console::interrupted();
   std::vector<std::string> warnings = source->warnings();
-  if (frames == 0 && !stopped) return error("{}: no frame in the stretch asked for", source->video().name());
+  if (frames == 0 && !stopped) return error("{}: no frame between --start and --end", source->video().name());
   if (empty == frames) warnings.push_back("no person was seen");
   for (const std::string& warning : warnings) console.warning(warning);
 
@@ -59,7 +61,8 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
   outcome.json["background"] = source->background();
   outcome.json["warnings"] = warnings;
   outcome.json["out"] = options.out;
-  outcome.text = fmt::format("{} masks in {}/masks, {} of them empty ({})", frames, options.out, empty, source->background());
+  outcome.text =
+      fmt::format("{} masks in {}/masks, {} of them empty ({})", frames, options.out, empty, source->background());
   outcome.interrupted = stopped;
   for (const Result<void>& written : {write_option_file(directory->path() / "config.toml", app, {}),
                                       write_json(directory->path() / "run.json", outcome.json)}) {

@@ -57,7 +57,8 @@ Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions&
                                                       .seed = common.seed});
   if (!motion) return motion.failure();
   if (motion->mean_residual_deg) {
-    outcome.json["retargeting_deg"] = {{"mean", *motion->mean_residual_deg}, {"max", motion->max_residual_deg.value_or(0)}};
+    outcome.json["retargeting_deg"] = {{"mean", *motion->mean_residual_deg},
+                                       {"max", motion->max_residual_deg.value_or(0)}};
   }
   Result<SyntheticSequence> sequence = make_sequence(*body, *motion, scene);
   if (!sequence || options.camera.file.empty()) return sequence;
@@ -66,7 +67,8 @@ Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions&
   return sequence;
 }
 
-Result<Outcome> run_synth(const CLI::App& app, const SynthOptions& options, const CommonOptions& common, Console& console) {
+Result<Outcome> run_synth(const CLI::App& app, const SynthOptions& options, const CommonOptions& common,
+                          Console& console) {
   if (options.out.empty()) throw UsageError("--out is missing");
   if (!options.camera.file.empty() && !options.views.empty()) throw UsageError("--view: not together with --camera");
   if (options.lead_in > 0 && !options.colour) throw UsageError("--lead-in: needs --colour");
@@ -117,10 +119,13 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
   CLI::App* const app = program.add_subcommand("synth", "Render a sequence with ground truth");
   app->add_option("--out", options->out, "Directory for the sequence");
   add_model_option(*app, options->model);
-  app->add_option("--motion", options->motion, "FILE.bvh, static, dof:INDEX, circle, sway or random")->capture_default_str();
-  app->add_option("--amplitude-deg", options->amplitude_deg, "How far sway, circle and random go")->check(CLI::Range(0.0, 180.0));
+  app->add_option("--motion", options->motion, "FILE.bvh, static, dof:INDEX, circle, sway or random")
+      ->capture_default_str();
+  app->add_option("--amplitude-deg", options->amplitude_deg, "How far sway, circle and random go")
+      ->check(CLI::Range(0.0, 180.0));
   app->add_option("--period", options->period_s, "Seconds a swing takes")->check(CLI::Range(0.01, 1e6));
-  app->add_option("--frames", options->frames, "Of the motion; default 80, or the whole of a BVH file")->check(CLI::Range(1, 1'000'000));
+  app->add_option("--frames", options->frames, "Of the motion; default 80, or the whole of a BVH file")
+      ->check(CLI::Range(1, 1'000'000));
   app->add_option("--fps", options->fps, "Frames a second")->capture_default_str()->check(CLI::Range(0.1, 10000.0));
   app->add_option("--view", options->views, "front, side, or degrees round the subject; repeat it for several cameras")
       ->allow_extra_args(false);
@@ -130,7 +135,8 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
   app->add_option("--backdrop", options->backdrop, "What is behind: textured or green")
       ->capture_default_str()
       ->check(CLI::IsMember({"textured", "green"}));
-  app->add_option("--lead-in", options->lead_in, "Frames of the video before the subject is there")->check(CLI::Range(0, 100'000));
+  app->add_option("--lead-in", options->lead_in, "Frames of the video before the subject is there")
+      ->check(CLI::Range(0, 100'000));
   app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
   return {app, [app, options, &common](Console& console) -> Result<Outcome> {
             if (!options->config.empty()) {

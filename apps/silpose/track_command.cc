@@ -10,6 +10,7 @@
 #include "apps/silpose/option_file.h"
 #include "apps/silpose/result_directory.h"
 #include "apps/silpose/run_facts.h"
+#include "apps/silpose/track_options.h"
 #include "apps/silpose/track_writer.h"
 #include "sadb/store/memory_store.h"
 #include "silpose/base/clock.h"
@@ -21,13 +22,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct TrackOptions {
-  InputOptions input;
-  CameraOptions camera;
-  std::string model = "human", out, config, init = "descent", metric = "pixel-count", root = "tracked", estimate;
-  TrackerOptions tracker;
-};
-
 // Seconds by stage; `background` is what was spent before the first frame.
 struct StageSeconds {
   double background = 0, decode = 0, segment = 0, propagate = 0, likelihood = 0, resample = 0, write = 0;
@@ -37,58 +31,6 @@ struct StageSeconds {
             {"likelihood", likelihood}, {"resample", resample}, {"write", write}};
   }
 };
-
-// The pose of a frame in a CSV of poses, or its first where it does not have that frame.
-Result<std::vector<double>> read_initial_pose(const std::string& file, const Skeleton& skeleton, int64_t frame) {
-  const Result<PoseTable> table = read_poses(file, skeleton);
-  if (!table) return table.failure();
-  if (table->rows.empty()) return error("{}: no pose in it", file);
-  for (const PoseTable::Row& row : table->rows) {
-    if (row.frame == frame) return row.values;
-  }
-  return table->rows.front().values;
-}
-
-Result<Tracker> make_tracker(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
-                             std::vector<PinholeCamera> cameras, uint64_t seed, int64_t first_frame) {
-  TrackerOptions tracker = options.tracker;
-  tracker.body = std::move(body);
-  tracker.cameras = std::move(cameras);
-  tracker.seed = seed;
-  tracker.root_fixed = options.root == "fixed";
-  if (options.estimate == "mean") tracker.estimate = Estimate::kMean;
-  if (options.estimate == "mode") tracker.estimate = Estimate::kMode;
-  if (options.estimate == "cluster") tracker.estimate = Estimate::kCluster;
-  if (options.init != "descent") {
-    Result<std::vector<double>> pose = read_initial_pose(options.init, tracker.body->skeleton, first_frame);
-    if (!pose) return pose.failure();
-    tracker.initial_pose = std::move(*pose);
-  }
-  try {
-    return Tracker(std::move(tracker));
-  } catch (const std::invalid_argument& wrong) {
-    throw UsageError(wrong.what());
-  }
-}
-
-// The tracker's options as they came out, for config.toml.
-std::map<std::string, std::string> chosen_options(const TrackerOptions& used) {
-  std::map<std::string, std::string> chosen;
-  const auto keep = [&](const char* name, const auto& value) {
-    if (value) chosen[name] = fmt::format("{}", *value);
-  };
-  keep("particles", used.num_particles);
-  keep("layers", used.num_layers);
-  keep("motion", used.motion);
-  keep("sigma-deg", used.sigma_deg);
-  keep("resampling", used.resampling);
-  keep("regenerate", used.regenerate);
-  keep("sharpness", used.sharpness);
-  if (used.estimate) {
-    chosen["estimate"] = *used.estimate == Estimate::kMean ? "mean" : *used.estimate == Estimate::kMode ? "mode" : "cluster";
-  }
-  return chosen;
-}
 
 Json figure(double mean, double std) {
   if (std::isnan(mean)) return nullptr;
@@ -133,7 +75,7 @@ class TrackRun {
   // Cameras for the videos, before any background is learned.
   Result<std::vector<PinholeCamera>> prepare_cameras() {
     if (options_.input.videos.empty()) throw UsageError("VIDEO is missing");
-    const Result<Video> video = open_video(options_.input.videos, {.default_fps = options_.input.default_fps});
+    const Result<Video> video = open_video(options_.input.videos, options_.input.video_options());
     if (!video) return video.failure();
     std::vector<PictureSize> sizes;
     for (int c = 0; c < video->num_cameras(); ++c) sizes.push_back({video->width(c), video->height(c)});
@@ -143,7 +85,8 @@ class TrackRun {
     return choice->cameras;
   }
 
-  Result<void> track(ObservationSource& source, const std::vector<PinholeCamera>& cameras, const std::filesystem::path& folder) {
+  Result<void> track(ObservationSource& source, const std::vector<PinholeCamera>& cameras,
+                     const std::filesystem::path& folder) {
     const Stopwatch wall;
     TrackWriter writer(folder, body_, cameras, source.video().fps());
     std::vector<std::string> names;
@@ -181,7 +124,7 @@ class TrackRun {
     interrupted_ = interrupted_ || Console::interrupted();
     if (frames == 0) {
       if (interrupted_) return error("interrupted before the first frame");
-      return error("{}: no frame in the stretch asked for", source.video().name());
+      return error("{}: no frame between --start and --end", source.video().name());
     }
     loop_s_ = wall.seconds();
     Result<TrackRecording> recording = read_recording(*board);
@@ -272,44 +215,12 @@ class TrackRun {
   bool interrupted_ = false;
 };
 
-void add_tracker_options(CLI::App& app, TrackOptions& options) {
-  TrackerOptions& tracker = options.tracker;
-  app.add_option("--preset", tracker.preset, "default, or thesis: two plain filters, root and pose")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"default", "thesis"}));
-  app.add_option("--particles", tracker.num_particles, "Particles in a layer")->check(CLI::Range(1, 1'000'000));
-  app.add_option("--layers", tracker.num_layers, "Annealing layers; 1 is a plain filter")->check(CLI::Range(1, 1000));
-  app.add_option("--motion", tracker.motion, "How particles move between frames")
-      ->check(CLI::IsMember({"diffusion", "first-order-augmented"}));
-  app.add_option("--sigma-deg", tracker.sigma_deg, "Noise of a typical joint angle in 1/30 s")->check(CLI::Range(1e-3, 180.0));
-  app.add_option("--resampling", tracker.resampling, "Which particles go on")->check(CLI::IsMember({"systematic", "comb"}));
-  app.add_option("--resample-below", tracker.resample_below, "Only when n_eff is below this part of the particles")
-      ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--regenerate", tracker.regenerate, "Part of the comb's particles that is made anew")->check(CLI::Range(0.0, 0.99));
-  app.add_option("--sharpness", tracker.sharpness, "How strongly better silhouettes are preferred")->check(CLI::Range(1e-3, 1e6));
-  app.add_option("--metric", options.metric, "How silhouettes are compared")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"pixel-count"}));
-  app.add_option("--root", options.root, "tracked, or fixed where it starts")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"tracked", "fixed"}));
-  app.add_option("--init", options.init, "First pose: descent, or a poses.csv (its row of the first frame)")->capture_default_str();
-  app.add_option("--estimate", options.estimate, "Which pose is reported: mean, mode or cluster")
-      ->check(CLI::IsMember({"mean", "mode", "cluster"}));
-}
-
 }  // namespace
 
 Command add_track(CLI::App& program, const CommonOptions& common) {
   const auto options = std::make_shared<TrackOptions>();
   CLI::App* const app = program.add_subcommand("track", "Track a person: VIDEO... --out DIR");
-  add_input_options(*app, options->input);
-  app->add_option("--out", options->out, "Directory for the result");
-  add_model_option(*app, options->model);
-  add_camera_options(*app, options->camera);
-  add_tracker_options(*app, *options);
-  app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
+  add_track_options(*app, *options);
   return {app, [app, options, &common](Console& console) -> Result<Outcome> {
             if (!options->config.empty()) {
               const Result<void> applied = apply_option_file(options->config, *app);

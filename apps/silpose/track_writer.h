@@ -19,8 +19,8 @@ namespace silpose::app {
 
 class TrackWriter {
  public:
-  TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras,
-              double fps);
+  TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
+              std::vector<PinholeCamera> cameras, double fps);
 
   // masks/ (masks_NAME/ with several cameras) and one picture of overlay.mp4, of the first camera.
   Result<void> add_frame(const Instant& instant, const StepReport& report);
