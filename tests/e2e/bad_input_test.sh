@@ -1,0 +1,114 @@
+# Whatever is wrong with the input: one line that names the thing, exit 1 (2 for wrong usage), earlier results untouched.
+source "$(dirname "$0")/checks.sh"
+
+"$silpose" synth --out truth --motion static --frames 3 --size 160x120 --quiet >log.txt
+"$silpose" synth --out other --motion static --frames 3 --size 200x120 --quiet >log.txt
+"$silpose" synth --out colour --colour --motion static --frames 3 --size 160x120 --quiet >log.txt
+cp -r truth result  # an earlier result, which every failure must leave alone
+find result -type f -exec sha256sum {} + | sort >before.txt
+plain=(track --out result --particles 10 --layers 1)
+track=("${plain[@]}" --camera truth/camera.toml)
+masks=("${track[@]}" truth/masks --segmenter masks)
+uncalibrated=("${plain[@]}" truth/masks --segmenter masks)
+
+# Wrong usage.
+expect_failure 2 'nonsense' nonsense
+expect_failure 2 'subcommand' --seed 1
+expect_failure 2 'hypotheses' "${masks[@]}" --hypotheses 3
+expect_failure 2 'out' track truth/masks
+expect_failure 2 'VIDEO' track --out result
+expect_failure 2 'particles' "${masks[@]}" --particles 0
+expect_failure 2 'particles' "${masks[@]}" --particles many
+expect_failure 2 'layers' "${masks[@]}" --layers -3
+expect_failure 2 'sigma-deg' "${masks[@]}" --sigma-deg -1
+expect_failure 2 'regenerate' "${masks[@]}" --regenerate 1.5
+expect_failure 2 'resample-below' "${masks[@]}" --resample-below 2
+expect_failure 2 'motion' "${masks[@]}" --motion hopping
+expect_failure 2 'metric' "${masks[@]}" --metric beauty
+expect_failure 2 'resampling' "${masks[@]}" --resampling raffle
+expect_failure 2 'segmenter' "${track[@]}" truth/masks --segmenter magic
+expect_failure 2 'preset' "${masks[@]}" --preset magic
+expect_failure 2 'region' "${masks[@]}" --region 1,2,3
+expect_failure 2 'start' "${masks[@]}" --start 2 --end 1
+expect_failure 2 'size' synth --out new --size 0x0
+expect_failure 2 'frames' synth --out new --frames 0
+expect_failure 2 'view' synth --out new --view above
+
+# Videos.
+: >empty.mp4
+echo 'not a video' >text.mp4
+head -c 300 colour/video.mp4 >stump.mp4
+mkdir folder
+mkdir sizes && cp truth/masks/000000.png sizes/000000.png && cp other/masks/000001.png sizes/000001.png
+expect_failure 1 'absent.mp4' "${track[@]}" absent.mp4
+expect_failure 1 'empty.mp4' "${track[@]}" empty.mp4
+expect_failure 1 'text.mp4' "${track[@]}" text.mp4
+expect_failure 1 'stump.mp4' "${track[@]}" stump.mp4
+expect_failure 1 'folder' "${track[@]}" folder
+expect_failure 1 'sizes' "${track[@]}" sizes --segmenter masks
+expect_failure 1 'start' "${masks[@]}" --start 100
+
+# Calibrations.
+grep -v '^matrix' truth/camera.toml >no_matrix.toml
+sed -E 's/^translation = .*/translation = [nan, 0.0, 5.5]/' truth/camera.toml >nan.toml
+echo 'this is [ not TOML' >broken.toml
+expect_failure 1 'absent.toml' "${uncalibrated[@]}" --camera absent.toml
+expect_failure 1 'no_matrix.toml.*matrix' "${uncalibrated[@]}" --camera no_matrix.toml
+expect_failure 1 'nan.toml' "${uncalibrated[@]}" --camera nan.toml
+expect_failure 1 'broken.toml' "${uncalibrated[@]}" --camera broken.toml
+expect_failure 1 'other/camera.toml.*200x120' "${uncalibrated[@]}" --camera other/camera.toml
+expect_failure 1 'nobody' "${masks[@]}" --camera-name nobody
+
+# Backgrounds and masks.
+expect_failure 1 'other/masks/000000.png' "${track[@]}" colour/video.mp4 --background other/masks/000000.png
+expect_failure 1 'absent.png' "${track[@]}" colour/video.mp4 --background absent.png
+expect_failure 1 'other/masks' "${track[@]}" colour/video.mp4 --masks other/masks
+mkdir few && cp truth/masks/000000.png truth/masks/000001.png few
+expect_failure 1 'few' "${track[@]}" colour/video.mp4 --masks few
+expect_failure 1 'other/masks/000000.png' "${masks[@]}" --garbage-mask other/masks/000000.png
+expect_failure 1 'lead-in' "${track[@]}" colour/video.mp4 --background lead-in:60
+
+# Poses.
+sed '1s/abdomen/tummy/' truth/poses.csv >columns.csv
+sed -E '2s/[^,]*$/nan/' truth/poses.csv >nan.csv
+: >empty.csv
+expect_failure 1 'columns.csv' "${masks[@]}" --init columns.csv
+expect_failure 1 'nan.csv' "${masks[@]}" --init nan.csv
+expect_failure 1 'empty.csv' "${masks[@]}" --init empty.csv
+expect_failure 1 'absent.csv' render --pose absent.csv --out picture.png
+expect_failure '1|2' 'poses.csv:99' render --pose truth/poses.csv:99 --out picture.png
+expect_failure 1 'folder' evaluate --result folder --truth truth
+mkdir wrong && cp columns.csv wrong/poses.csv
+expect_failure 1 'wrong/poses.csv' evaluate --result wrong --truth truth
+expect_failure 1 'absent' evaluate --result result --truth absent
+
+# Motions and bodies.
+printf 'HIERARCHY\nROOT Hips\n{\n  OFFSET 0 0\n' >broken.bvh
+expect_failure 1 'broken.bvh' synth --out new --motion broken.bvh
+expect_failure 1 'absent.bvh' synth --out new --motion absent.bvh
+expect_failure '1|2' 'dancing' synth --out new --motion dancing
+expect_failure '1|2' 'dof:37' synth --out new --motion dof:37
+expect_failure '1|2' 'centaur' "${masks[@]}" --model centaur
+expect_failure '1|2' 'wings' "${masks[@]}" --model human:wings=2
+expect_failure '1|2' 'height' "${masks[@]}" --model human:height=4
+expect_failure 1 'absent.body' "${masks[@]}" --model absent.body
+expect_failure 1 'text.body' "${masks[@]}" --model text.body
+export SILPOSE_DATA=$PWD/no-data
+expect_failure 1 'no-data.*fetch-body-data' "${masks[@]}"
+unset SILPOSE_DATA
+
+# Outputs.
+mkdir mine && echo precious >mine/letter.txt
+expect_failure 1 'mine' synth --out mine --frames 1
+[[ $(cat mine/letter.txt) == precious ]] || fail "a directory of other things was touched"
+echo precious >file
+expect_failure 1 'file' synth --out file --frames 1
+expect_failure 1 'file/new' synth --out file/new --frames 1
+expect_failure 1 'file/picture.png' render --pose truth/poses.csv --out file/picture.png
+echo 'wheels = 4' >wheels.toml
+expect_failure '1|2' 'wheels' "${masks[@]}" --config wheels.toml
+
+[[ ! -e new && ! -e result.partial && ! -e new.partial ]] || fail "something is left behind: $(ls)"
+find result -type f -exec sha256sum {} + | sort >after.txt
+cmp -s before.txt after.txt || fail "an earlier result was touched"
+finish
