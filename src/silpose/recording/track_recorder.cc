@@ -72,7 +72,8 @@ Result<void> TrackRecorder::put(const StepReport& report) {
     entries.emplace_back("spread", report.spread);
     entries.emplace_back("landmark_spread", flattened(report.landmark_spread));
   }
-  for (size_t c = 0; c < report.trust.size(); ++c) entries.emplace_back("trust/" + camera_names_[c], report.trust[c].overall);
+  for (size_t c = 0; c < report.trust.size(); ++c)
+    entries.emplace_back("trust/" + camera_names_[c], report.trust[c].overall);
   for (size_t c = 0; options_.masks && c < report.observed.size(); ++c) {
     entries.emplace_back("observed/" + camera_names_[c], report.observed[c]);
   }

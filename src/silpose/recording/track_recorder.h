@@ -19,11 +19,11 @@ struct RecorderOptions {
 };
 
 // Entries are stamped with the frame's time:
-//   PREFIX/frame, PREFIX/visual_accuracy, PREFIX/effective_sample_size, PREFIX/trust/CAMERA    scalar
-//   PREFIX/state                                                                               text, see state_name()
-//   PREFIX/pose, PREFIX/mode                                                                   pose (not while waiting)
-//   PREFIX/spread, PREFIX/landmark_spread (x, y, z of each, metres)                            vector (not while waiting)
-//   PREFIX/observed/CAMERA                                                                     mask
+//   PREFIX/frame, PREFIX/visual_accuracy, PREFIX/effective_sample_size, PREFIX/trust/CAMERA   scalar
+//   PREFIX/state                                                            text, see state_name()
+//   PREFIX/pose, PREFIX/mode                                                pose, not while waiting
+//   PREFIX/spread, PREFIX/landmark_spread (metres; x, y, z of each)         vector, not while waiting
+//   PREFIX/observed/CAMERA                                                  mask
 class TrackRecorder {
  public:
   TrackRecorder(std::shared_ptr<sadb::Blackboard> board, std::string skeleton, std::vector<std::string> camera_names,

@@ -30,10 +30,14 @@ PoseTable table_of(const TrackRecording& recording, bool has_scores, const Value
 
 std::string_view state_name(StepReport::State state) {
   switch (state) {
-    case StepReport::State::kWaiting: return "waiting";
-    case StepReport::State::kInitialised: return "initialised";
-    case StepReport::State::kTracked: return "tracked";
-    case StepReport::State::kCoasted: return "coasted";
+    case StepReport::State::kWaiting:
+      return "waiting";
+    case StepReport::State::kInitialised:
+      return "initialised";
+    case StepReport::State::kTracked:
+      return "tracked";
+    case StepReport::State::kCoasted:
+      return "coasted";
   }
   return "waiting";
 }

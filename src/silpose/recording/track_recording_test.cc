@@ -63,9 +63,8 @@ TEST(TrackRecording, AJointBehindTheCameraHasNoPixel) {
 }
 
 TEST(TrackRecording, EvenPosesFillGaps) {
-  const TrackRecording recording{"stick",
-                                 {step(1, {}, State::kWaiting), step(2, {0.5, 0}, State::kTracked),
-                                  step(4, {0.7, 0}, State::kTracked)}};
+  const TrackRecording recording{
+      "stick", {step(1, {}, State::kWaiting), step(2, {0.5, 0}, State::kTracked), step(4, {0.7, 0}, State::kTracked)}};
   EXPECT_EQ(even_poses(recording), (std::vector<std::vector<double>>{{0.5, 0}, {0.5, 0}, {0.7, 0}}));
 }
 

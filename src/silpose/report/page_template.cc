@@ -59,7 +59,8 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; width: 6em; }
 <h2>The clip, and how well the body explains it</h2>
 <div class="two">
   <div><video id="video" controls muted loop playsinline preload="auto" src="@VIDEO@"></video>
-  <p class="key">Outline of the tracked body and its skeleton over the picture. Click any curve to go to that frame.</p></div>
+  <p class="key">Outline of the tracked body and its skeleton over the picture. Click a curve to go to that
+  frame.</p></div>
   <div class="stack" id="quality"></div>
 </div>
 
@@ -159,7 +160,8 @@ function draw(chart) {
     const first = data.time[0], last = data.time[count - 1];
     const horizontal = ticks(first, last, Math.max(2, Math.floor(width / 90)));
     for (const time of horizontal.values) {
-      g.fillText(time.toFixed(horizontal.places) + " s", left + (right - left) * (time - first) / (last - first), bottom + 5);
+      const at = left + (right - left) * (time - first) / (last - first);
+      g.fillText(time.toFixed(horizontal.places) + " s", at, bottom + 5);
     }
   }
   g.save();
@@ -221,12 +223,14 @@ const counts = {tracked: 0, coasted: 0, waiting: 0, initialised: 0};
 data.state.forEach(state => ++counts[state]);
 const tracked = counts.tracked + counts.initialised;
 document.getElementById("lead").textContent = count
-    ? `Frames ${data.frame[0]} to ${data.frame[count - 1]}, ${digits(data.time[0], 2)} s to ${digits(data.time[count - 1], 2)} s`
+    ? `Frames ${data.frame[0]} to ${data.frame[count - 1]}, ` +
+      `${digits(data.time[0], 2)} s to ${digits(data.time[count - 1], 2)} s`
     : "No frame";
 const tiles = document.getElementById("tiles");
-for (const [value, label] of [[count, "frames"], [tracked, "tracked"], [counts.coasted, "coasted (no usable silhouette)"],
-    [counts.waiting, "waiting for a person"],
-    [accuracy.length ? digits(mean(accuracy), 3) + " \u00b1 " + digits(deviation(accuracy), 3) : "-", "visual accuracy (IoU)"],
+const agreement = accuracy.length ? digits(mean(accuracy), 3) + " \u00b1 " + digits(deviation(accuracy), 3) : "-";
+for (const [value, label] of [[count, "frames"], [tracked, "tracked"],
+    [counts.coasted, "coasted (no usable silhouette)"], [counts.waiting, "waiting for a person"],
+    [agreement, "visual accuracy (IoU)"],
     [digits(mean(known(data.n_eff)), 0), "effective particles, mean"]]) {
   const tile = element("div", tiles, undefined, "tile");
   element("b", tile, value); element("span", tile, label);
@@ -237,10 +241,14 @@ warnings.hidden = !data.warnings.length;
 
 const quality = document.getElementById("quality");
 addChart(quality, {title: "Visual accuracy", values: data.accuracy, range: [0, 1], places: 3});
-addChart(quality, {title: "Effective sample size", values: data.n_eff, places: 0, range: [0, Math.max(1, ...known(data.n_eff)) * 1.05]});
+addChart(quality, {title: "Effective sample size", values: data.n_eff, places: 0,
+                   range: [0, Math.max(1, ...known(data.n_eff)) * 1.05]});
 const rotational = data.dofs.filter(dof => dof.unit !== "m");
 addChart(quality, {title: "Mean spread of the angles", unit: "\u00b0", places: 2, least: 1,
-  values: data.frame.map((_, i) => { const sds = known(rotational.map(dof => dof.sd[i])); return sds.length ? mean(sds) : null; })});
+  values: data.frame.map((_, i) => {
+    const sds = known(rotational.map(dof => dof.sd[i]));
+    return sds.length ? mean(sds) : null;
+  })});
 const fixedCharts = charts.length;
 
 // The curves of one part of the body at a time.

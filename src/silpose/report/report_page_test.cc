@@ -89,7 +89,8 @@ TEST_F(ReportPage, HostileNamesStayText) {
 
 TEST_F(ReportPage, EmbedsASmallVideoAndLinksALargeOne) {
   input.overlay_video = std::filesystem::path(testing::TempDir()) / "silpose_report_overlay.mp4";
-  for (const auto& [bytes, text] : {std::pair<std::string, std::string>{"M", "TQ=="}, {"Ma", "TWE="}, {"Man", "TWFu"}}) {
+  for (const auto& [bytes, text] :
+       {std::pair<std::string, std::string>{"M", "TQ=="}, {"Ma", "TWE="}, {"Man", "TWFu"}}) {
     std::ofstream(input.overlay_video, std::ios::binary) << bytes;
     EXPECT_THAT(make_report(input).value(), HasSubstr("src=\"data:video/mp4;base64," + text + "\""));
   }

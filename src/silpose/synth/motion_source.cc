@@ -20,7 +20,9 @@ using Poses = std::vector<Pose>;
 constexpr int kDefaultFrames = 80;
 constexpr double kCircleRadius = 1.0, kGaitPeriod = 1.1;  // m, s for two steps
 
-int count_frames(const MotionOptions& options) { return options.num_frames > 0 ? options.num_frames : kDefaultFrames; }
+int count_frames(const SyntheticMotionOptions& options) {
+  return options.num_frames > 0 ? options.num_frames : kDefaultFrames;
+}
 
 bool is_human(const Skeleton& skeleton) { return skeleton.find_dof("left_thigh_rx") && skeleton.find_dof("root_ty"); }
 
@@ -116,7 +118,7 @@ Pose draw_static_pose(const BodyModel& body, uint64_t seed) {
   return pose;
 }
 
-Poses sweep_dof(const BodyModel& body, int dof_idx, const MotionOptions& options) {
+Poses sweep_dof(const BodyModel& body, int dof_idx, const SyntheticMotionOptions& options) {
   check(dof_idx >= 0 && dof_idx < body.skeleton.num_dofs(), "sweep_dof: index {} of {}", dof_idx,
         body.skeleton.num_dofs());
   const Dof& dof = body.skeleton.dofs()[static_cast<size_t>(dof_idx)];
@@ -134,7 +136,7 @@ Poses sweep_dof(const BodyModel& body, int dof_idx, const MotionOptions& options
   return poses;
 }
 
-Poses sway(const BodyModel& body, const MotionOptions& options) {
+Poses sway(const BodyModel& body, const SyntheticMotionOptions& options) {
   const Skeleton& skeleton = body.skeleton;
   const double amplitude = to_radians(options.amplitude_deg.value_or(8)), period = options.period_s.value_or(4);
   const auto foot = skeleton.find_joint("left_foot"), other_foot = skeleton.find_joint("right_foot");
@@ -173,7 +175,7 @@ Poses sway(const BodyModel& body, const MotionOptions& options) {
   return poses;
 }
 
-Poses walk_circle(const BodyModel& body, const MotionOptions& options) {
+Poses walk_circle(const BodyModel& body, const SyntheticMotionOptions& options) {
   const Skeleton& skeleton = body.skeleton;
   const double swing = to_radians(options.amplitude_deg.value_or(25)), lap = options.period_s.value_or(6);
   Poses poses;
@@ -200,7 +202,7 @@ Poses walk_circle(const BodyModel& body, const MotionOptions& options) {
   return poses;
 }
 
-Poses random_smooth(const BodyModel& body, const MotionOptions& options) {
+Poses random_smooth(const BodyModel& body, const SyntheticMotionOptions& options) {
   constexpr int kTerms = 4;
   const Skeleton& skeleton = body.skeleton;
   const double amplitude = to_radians(options.amplitude_deg.value_or(25)), period = options.period_s.value_or(2);
@@ -240,7 +242,8 @@ Poses random_smooth(const BodyModel& body, const MotionOptions& options) {
   return poses;
 }
 
-Result<SyntheticMotion> motion_from_clip(const Clip& clip, const BodyModel& body, const MotionOptions& options) {
+Result<SyntheticMotion> motion_from_clip(const Clip& clip, const BodyModel& body,
+                                         const SyntheticMotionOptions& options) {
   Result<Retargeted> retargeted = retarget(clip, body, {.fps = options.fps});
   if (!retargeted) return retargeted.failure();
   SyntheticMotion motion;
@@ -256,7 +259,8 @@ Result<SyntheticMotion> motion_from_clip(const Clip& clip, const BodyModel& body
   return motion;
 }
 
-Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& body, const MotionOptions& options) {
+Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& body,
+                                    const SyntheticMotionOptions& options) {
   check(options.fps > 0, "make_motion: fps {} is not positive", options.fps);
   check(options.num_frames >= 0, "make_motion: {} frames", options.num_frames);
   check(options.period_s.value_or(1) > 0, "make_motion: period {} s is not positive", options.period_s.value_or(1));

@@ -14,7 +14,7 @@
 
 namespace silpose {
 
-struct MotionOptions {
+struct SyntheticMotionOptions {
   int num_frames = 0;  // 0: the whole clip of a BVH file; 80 of any other motion
   double fps = 30;
   std::optional<double> amplitude_deg;  // of sway (8), of the legs on the circle (25), of random (25)
@@ -31,7 +31,8 @@ struct SyntheticMotion {
 
 // The motion called `name`; one that ends in ".bvh" is a file.
 // Errors: unknown motion; a DOF that is not a number or out of range; an unreadable BVH, or one that is too short.
-Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& body, const MotionOptions& options = {});
+Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& body,
+                                    const SyntheticMotionOptions& options = {});
 
 // A pose drawn by seed: every angle between zero and most of the way to a limit, facing roughly forward, lowest point
 // on the floor. Of a human also plausible: hands and elbows outside the trunk, knees and feet apart, no handstand. [D]
@@ -39,19 +40,20 @@ std::vector<double> draw_static_pose(const BodyModel& body, uint64_t seed);
 
 // One DOF swings over its whole range and back once every period; all others stay zero, standing. [T][D]
 // Errors: throws std::invalid_argument for an index out of range.
-std::vector<std::vector<double>> sweep_dof(const BodyModel& body, int dof_idx, const MotionOptions& options);
+std::vector<std::vector<double>> sweep_dof(const BodyModel& body, int dof_idx, const SyntheticMotionOptions& options);
 
 // A human leans over the ankles in a slow figure of eight, arms swinging; any other body swings all of its angles.
-std::vector<std::vector<double>> sway(const BodyModel& body, const MotionOptions& options);
+std::vector<std::vector<double>> sway(const BodyModel& body, const SyntheticMotionOptions& options);
 
 // Walks round a circle of 1 m radius about the origin, swinging arms and legs. Other bodies just go round.
-std::vector<std::vector<double>> walk_circle(const BodyModel& body, const MotionOptions& options);
+std::vector<std::vector<double>> walk_circle(const BodyModel& body, const SyntheticMotionOptions& options);
 
 // Every angle a sum of sinusoids no faster than the period, around a relaxed stand; drawn by seed.
-std::vector<std::vector<double>> random_smooth(const BodyModel& body, const MotionOptions& options);
+std::vector<std::vector<double>> random_smooth(const BodyModel& body, const SyntheticMotionOptions& options);
 
 // A clip retargeted, its first num_frames. Errors: those of retarget(); too few frames.
-Result<SyntheticMotion> motion_from_clip(const Clip& clip, const BodyModel& body, const MotionOptions& options);
+Result<SyntheticMotion> motion_from_clip(const Clip& clip, const BodyModel& body,
+                                         const SyntheticMotionOptions& options);
 
 // The body's lowest point in a pose, metres.
 double lowest_point(const BodyModel& body, const std::vector<double>& pose);

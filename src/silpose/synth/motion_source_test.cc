@@ -46,7 +46,7 @@ TEST(Motion, StaticPosesFollowTheSeedAndStandOnTheFloor) {
 TEST(Motion, SweepsOneDofOverItsWholeRange) {
   const BodyModel& body = human();
   const int d = body.skeleton.find_dof("left_forearm_rx").value();
-  MotionOptions options;
+  SyntheticMotionOptions options;
   options.num_frames = 60;
   const SyntheticMotion motion = make_motion("dof:" + std::to_string(d), body, options).value();
   ASSERT_EQ(motion.poses.size(), 60u);
@@ -78,7 +78,7 @@ TEST(Motion, SwayKeepsTheAnklesInPlace) {
 
 TEST(Motion, CircleGoesRoundFacingWhereItGoes) {
   const BodyModel& body = human();
-  MotionOptions options;
+  SyntheticMotionOptions options;
   options.num_frames = 181;
   const SyntheticMotion motion = make_motion("circle", body, options).value();
   expect_inside_limits(body.skeleton, motion.poses);
@@ -94,7 +94,7 @@ TEST(Motion, CircleGoesRoundFacingWhereItGoes) {
 
 TEST(Motion, RandomIsSmoothAndFollowsTheSeed) {
   const BodyModel& body = human();
-  MotionOptions options;
+  SyntheticMotionOptions options;
   const auto one = random_smooth(body, options), again = random_smooth(body, options);
   EXPECT_EQ(one, again);
   options.seed = 2;

@@ -68,7 +68,7 @@ TEST_F(SequenceFiles, ReadBackAsTheyWere) {
 
 TEST_F(SequenceFiles, HaveOneSetOfMasksForEachCamera) {
   auto body = std::make_shared<const BodyModel>(make_test_body());
-  MotionOptions motion;
+  SyntheticMotionOptions motion;
   motion.num_frames = 3;
   SceneOptions scene;
   scene.width = 80, scene.height = 60, scene.focal_px = 90;

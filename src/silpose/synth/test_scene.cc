@@ -6,7 +6,7 @@ namespace silpose {
 
 SyntheticSequence make_test_scene(int num_frames, int lead_in) {
   auto body = std::make_shared<const BodyModel>(make_test_body());
-  MotionOptions motion;
+  SyntheticMotionOptions motion;
   motion.num_frames = num_frames;
   motion.amplitude_deg = 20;
   motion.period_s = 20 / motion.fps;
