@@ -1,0 +1,11 @@
+// silpose.h: what a program that tracks a person includes.
+// The pieces have headers of their own; see ARCHITECTURE.md for which module does what.
+#pragma once
+
+#include "silpose/body/body_model.h"
+#include "silpose/body/human.h"
+#include "silpose/exchange/tables.h"
+#include "silpose/geometry/calibration_file.h"
+#include "silpose/image/video.h"
+#include "silpose/render/silhouette.h"
+#include "silpose/track/tracker.h"
