@@ -161,7 +161,8 @@ function draw(chart) {
     const horizontal = ticks(first, last, Math.max(2, Math.floor(width / 90)));
     for (const time of horizontal.values) {
       const at = left + (right - left) * (time - first) / (last - first);
-      g.fillText(time.toFixed(horizontal.places) + " s", at, bottom + 5);
+      g.textAlign = at > right - 16 ? "right" : "center";
+      g.fillText(time.toFixed(horizontal.places) + " s", Math.min(at, right + 6), bottom + 5);
     }
   }
   g.save();
