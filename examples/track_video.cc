@@ -1,0 +1,28 @@
+// Tracks the person in a clip: track_video BODY.body CALIBRATION.toml VIDEO. Prints one line a frame.
+#include <fmt/format.h>
+#include <silpose/silpose.h>
+
+#include <exception>
+#include <memory>
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    fmt::print(stderr, "usage: track_video BODY.body CALIBRATION.toml VIDEO\n");
+    return 2;
+  }
+  try {
+    const auto body = std::make_shared<silpose::BodyModel>(silpose::load_body(argv[1]).value());
+    const auto cameras = silpose::load_cameras(argv[2]).value();
+    silpose::Tracker tracker({.body = body, .cameras = cameras, .num_particles = 50, .num_layers = 4, .seed = 1});
+    auto video = silpose::open_video(argv[3]).value();
+    for (const silpose::Frame& frame : video) {
+      const silpose::StepReport report = tracker.step(frame);
+      fmt::print("{:.3f} s  ESS {:.0f}  visual accuracy {:.2f}\n", report.time_s(), report.effective_sample_size,
+                 report.visual_accuracy);
+    }
+  } catch (const std::exception& failure) {
+    fmt::print(stderr, "track_video: {}\n", failure.what());
+    return 1;
+  }
+  return 0;
+}
