@@ -8,6 +8,7 @@
 
 #include "apps/silpose/command.h"
 #include "silpose/base/clock.h"
+#include "silpose/track/observe.h"
 #include "silpose/image/image_file.h"
 
 namespace silpose::app {
@@ -52,17 +53,6 @@ Result<CleanUpOptions> clean_up_options(const InputOptions& options, const Video
     clean_up.garbage_mask = *mask;
   }
   return clean_up;
-}
-
-Observation observation_of(Segmentation segmentation) {
-  Observation observation;
-  observation.box = segmentation.mask.bounding_box();
-  observation.mask = std::move(segmentation.mask);
-  observation.trust = {.overall = segmentation.trust,
-                       .nothing_found = segmentation.nothing_found,
-                       .touches_border = segmentation.touches_border,
-                       .area_jumped = segmentation.area_jumped};
-  return observation;
 }
 
 }  // namespace
@@ -159,7 +149,7 @@ Result<std::optional<Instant>> ObservationSource::next() {
       Result<Segmentation> segmentation = segmenters_[camera]->segment((*frame)->images[camera], (*frame)->index);
       segment_s += segmenting.seconds();
       if (!segmentation) return segmentation.failure();
-      instant.observations.push_back(observation_of(std::move(*segmentation)));
+      instant.observations.push_back(observation_from(std::move(*segmentation)));
     }
     if (!wanted) {
       if (Console::interrupted()) return std::optional<Instant>();

@@ -1,6 +1,7 @@
 #include "silpose/track/initialisation.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -97,9 +98,34 @@ StartingPose polish(const SilhouetteLikelihood& likelihood, const Evidence& evid
   return found.log_likelihood > start.log_likelihood ? found : start;
 }
 
+// Which of eight directions a pose faces, for a skeleton whose root turns about the vertical; else 0.
+int heading_sector(const Skeleton& skeleton, std::span<const double> pose) {
+  for (int d = 0; d < skeleton.num_dofs(); ++d) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    if (dof.joint_idx == 0 && dof.is_periodic && dof.axis.y() > 0.5) {
+      return static_cast<int>(std::lround(wrap_angle(pose[static_cast<size_t>(d)]) / (kPi / 4)) + 8) % 8;
+    }
+  }
+  return 0;
+}
+
+// Front and back look alike in a silhouette. Where nothing else tells, a person before a camera faces it: 1 when the
+// root does, -1 when its back does.
+double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {
+  const Rigid3 root = body.skeleton.forward_kinematics(pose).front();
+  return (root.rotation * Eigen::Vector3d::UnitZ()).dot((camera.centre_in_world() - root.translation).normalized());
+}
+
 template <class T, class Value>
 void sort_best_first(std::vector<T>& items, Value value) {
   std::stable_sort(items.begin(), items.end(), [&](const T& a, const T& b) { return value(a) > value(b); });
+}
+
+// The first `count` items, in order, of each of eight sectors.
+template <class T, class Sector>
+void keep_per_sector(std::vector<T>& items, int count, Sector sector) {
+  std::array<int, 8> taken{};
+  std::erase_if(items, [&](const T& item) { return ++taken[static_cast<size_t>(sector(item))] > count; });
 }
 
 }  // namespace
@@ -154,20 +180,27 @@ std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, con
   std::vector<size_t> order(values.size());
   std::iota(order.begin(), order.end(), size_t{0});
   sort_best_first(order, [&](size_t k) { return values[k]; });
-  order.resize(std::min(order.size(), static_cast<size_t>(options.num_descended)));
+  const Skeleton& skeleton = likelihood.body().skeleton;
+  const auto pose_of = [&](size_t k) {
+    return std::span<const double>(placed.row(static_cast<Eigen::Index>(k)).data(), static_cast<size_t>(placed.cols()));
+  };
+  keep_per_sector(order, options.num_descended_per_heading,
+                  [&](size_t k) { return heading_sector(skeleton, pose_of(k)); });
 
   std::vector<StartingPose> starts(order.size());
   parallel_for(order.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const auto row = placed.row(static_cast<Eigen::Index>(order[i]));
-      starts[i] = descend(likelihood, evidence, {row.data(), static_cast<size_t>(row.size())}, options.num_iterations);
+      starts[i] = descend(likelihood, evidence, pose_of(order[i]), options.num_iterations);
     }
   });
-  const auto fit = [](const StartingPose& start) { return start.log_likelihood; };
-  sort_best_first(starts, fit);
+  sort_best_first(starts, [](const StartingPose& start) { return start.log_likelihood; });
+  keep_per_sector(starts, 1, [&](const StartingPose& start) { return heading_sector(skeleton, start.pose); });
   starts.resize(std::min(starts.size(), static_cast<size_t>(options.num_polished)));
   for (size_t i = 0; i < starts.size(); ++i) starts[i] = polish(likelihood, evidence, starts[i], options, i);
-  sort_best_first(starts, fit);
+  const PinholeCamera& camera = likelihood.renderers().front()->camera();
+  sort_best_first(starts, [&](const StartingPose& start) {
+    return start.log_likelihood + options.facing_bonus * faces_camera(likelihood.body(), camera, start.pose);
+  });
   return starts;
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "silpose/track/adaptive_filter.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/sampling_filter.h"
 
@@ -32,9 +31,9 @@ class JointFilter final : public PoseFilter {
                 dofs_where(options.body->skeleton, [&](const Dof& dof) { return !options.root_fixed || !is_root(dof); }),
                 options.seed) {}
 
-  void start(std::span<const StartingPose> starts) override {
-    held_ = starts.front().pose;
-    filter_.start(starts);
+  void start(std::span<const double> pose) override {
+    held_.assign(pose.begin(), pose.end());
+    filter_.start(pose);
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
     return filter_.step(likelihood_.prepare(observations), held_, dt_s, seconds);
@@ -64,10 +63,10 @@ class TwoFilters final : public PoseFilter {
                      options.seed),
         root_filter_(options, whole_, dofs_where(skeleton_, is_root), options.seed + 1) {}
 
-  void start(std::span<const StartingPose> starts) override {
-    estimate_ = starts.front().pose;
-    pose_filter_.start(starts);
-    root_filter_.start(starts.first(1));
+  void start(std::span<const double> pose) override {
+    estimate_.assign(pose.begin(), pose.end());
+    pose_filter_.start(pose);
+    root_filter_.start(pose);
     particles_ = pose_filter_.particles();
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
@@ -114,9 +113,6 @@ class TwoFilters final : public PoseFilter {
 std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, Renderers renderers) {
   options.check();
   if (options.preset == "thesis") return std::make_unique<TwoFilters>(options, renderers);
-  if (*options.num_layers > 1 && options.annealing == Annealing::kAdaptive) {
-    return std::make_unique<AdaptiveFilter>(options, std::move(renderers));
-  }
   return std::make_unique<JointFilter>(options, std::move(renderers));
 }
 

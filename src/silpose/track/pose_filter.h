@@ -14,7 +14,6 @@
 #include "silpose/filter/particle_set.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/shape/observation.h"
-#include "silpose/track/initialisation.h"
 #include "silpose/track/step_report.h"
 #include "silpose/track/tracker_options.h"
 
@@ -24,8 +23,8 @@ class PoseFilter {
  public:
   virtual ~PoseFilter() = default;
 
-  // Starts over around poses, best first. REQUIRES: at least one.
-  virtual void start(std::span<const StartingPose> starts) = 0;
+  // Starts over around a pose [D].
+  virtual void start(std::span<const double> pose) = 0;
 
   // Shapes: one observation a camera, at least one with a say; `dt_s` seconds since the last call.
   virtual FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) = 0;

@@ -11,7 +11,7 @@
 namespace silpose {
 namespace {
 
-// Particles start within the noise of this many frames of the poses that descent found.
+// Particles start within the noise of this many frames of the pose that descent found.
 constexpr double kStartFrames = 4;
 constexpr double kSurvivalRate = 0.5;
 
@@ -26,18 +26,11 @@ SamplingFilter::SamplingFilter(const TrackerOptions& options, const SilhouetteLi
       motion_(make_motion_model(*options.motion, options.body->skeleton, {.sigma_deg = *options.sigma_deg}).value()),
       resampler_(make_resampler(*options.resampling, *options.regenerate).value()) {}
 
-void SamplingFilter::start(std::span<const StartingPose> starts) {
-  check(!starts.empty(), "SamplingFilter: no starting pose");
+void SamplingFilter::start(std::span<const double> pose) {
   const Skeleton& skeleton = options_.body->skeleton;
-  // Half of the particles to the first, a quarter to the second, ...: the last start gets what is left.
-  const int N = *options_.num_particles;
-  StateBatch poses(N, skeleton.num_dofs());
-  for (int n = 0; n < N; ++n) {
-    const int rank = static_cast<int>(std::log2(static_cast<double>(N) / (N - n)));
-    const auto& pose = starts[std::min<size_t>(static_cast<size_t>(rank), starts.size() - 1)].pose;
-    poses.row(n) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), std::ssize(pose));
-  }
-  StateBatch states = motion_->states_from_poses(poses);
+  check(std::ssize(pose) == skeleton.num_dofs(), "SamplingFilter: start pose of {} numbers", pose.size());
+  const StateBatch one = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), std::ssize(pose));
+  StateBatch states = motion_->states_from_poses(one.replicate(*options_.num_particles, 1));
   std::vector<double> deviation(motion_->deviation().begin(), motion_->deviation().end());
   const std::vector<int> columns = free_columns();
   for (size_t d = 0; d < deviation.size(); ++d) {

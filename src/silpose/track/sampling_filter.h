@@ -23,9 +23,8 @@ class SamplingFilter {
   SamplingFilter(const TrackerOptions& options, const SilhouetteLikelihood& likelihood, std::vector<bool> free_dofs,
                  uint64_t seed);
 
-  // Particles scattered about the starts by the motion model's noise of a few frames: half of them about the first, a
-  // quarter about the second, and so on.
-  void start(std::span<const StartingPose> starts);
+  // Particles scattered about a pose [D] by the motion model's noise of a few frames.
+  void start(std::span<const double> pose);
 
   // `held` [D]: where the DOF that do not move are now.
   FilterReport step(const Evidence& evidence, std::span<const double> held, double dt_s, StepSeconds& seconds);

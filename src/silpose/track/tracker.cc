@@ -10,6 +10,9 @@
 #include "silpose/filter/estimate.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/segment/segmenter.h"
+#include "silpose/track/initialisation.h"
+#include "silpose/track/observe.h"
+#include "silpose/track/pose_estimate.h"
 #include "silpose/track/pose_filter.h"
 
 namespace silpose {
@@ -57,9 +60,9 @@ struct Tracker::Impl {
     if (!options.proposal) options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton);
   }
 
-  // Starting poses for what is seen: the given one, or by descent; the last estimate competes, too.
-  std::vector<StartingPose> starting_poses(std::span<const Observation> observations) const {
-    if (options.initial_pose && last_pose.empty()) return {{*options.initial_pose, 0}};
+  // The starting pose for what is seen: the given one, or by descent; the last estimate competes, too.
+  std::vector<double> starting_pose(std::span<const Observation> observations) const {
+    if (options.initial_pose && last_pose.empty()) return *options.initial_pose;
     const SilhouetteLikelihood likelihood(renderers, {});
     Rng rng(options.seed, static_cast<uint64_t>(steps));
     StateBatch candidates = options.proposal->propose(observations.front(), 0, rng);
@@ -67,7 +70,9 @@ struct Tracker::Impl {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
-    return initialise(likelihood, likelihood.prepare(observations), candidates, {.seed = options.seed});
+    return initialise(likelihood, likelihood.prepare(observations), candidates, {.seed = options.seed})
+        .front()
+        .pose;
   }
 
   void summarise(std::span<const Observation> observations, StepReport& report) {
@@ -78,11 +83,7 @@ struct Tracker::Impl {
     report.pose = filter->estimate();
     const auto best = poses.row(mode_index(weights));
     report.mode.assign(best.data(), best.data() + num_dofs);
-    std::vector<int> circular;
-    for (int d = 0; d < num_dofs; ++d) {
-      if (options.body->skeleton.dofs()[static_cast<size_t>(d)].is_periodic) circular.push_back(d);
-    }
-    report.spread = weighted_deviation(poses, weights, circular);
+    report.spread = weighted_deviation(poses, weights, periodic_dofs(options.body->skeleton));
     report.landmark_spread = landmark_spread(*options.body, particles);
     if (report.state != StepReport::State::kCoasted) {
       for (size_t c = 0; c < observations.size(); ++c) {
@@ -126,7 +127,7 @@ StepReport Tracker::step(std::span<const Observation> observations, int64_t fram
 
   if (seen && !t.started) {
     const Stopwatch stopwatch;
-    t.filter->start(t.starting_poses(observations));
+    t.filter->start(t.starting_pose(observations));
     t.started = true;
     report.state = StepReport::State::kInitialised;
     report.seconds.propagate += stopwatch.seconds();
@@ -143,6 +144,22 @@ StepReport Tracker::step(std::span<const Observation> observations, int64_t fram
   ++t.steps;
   t.last_time_ns = time_ns;
   if (seen) t.last_seen_ns = time_ns;
+  return report;
+}
+
+StepReport Tracker::step(const Frame& frame) {
+  Impl& t = *impl_;
+  check(frame.images.size() == t.options.cameras.size(), "Tracker: {} images for {} cameras", frame.images.size(),
+        t.options.cameras.size());
+  const Stopwatch stopwatch;
+  std::vector<Observation> observations;
+  for (size_t c = 0; c < frame.images.size(); ++c) {
+    if (t.segmenters.size() <= c) t.segmenters.push_back(make_segmenter("", {.background = "online"}).value());
+    observations.push_back(observation_from(t.segmenters[c]->segment(frame.images[c], frame.index).value()));
+  }
+  const double segmenting = stopwatch.seconds();
+  StepReport report = step(observations, frame.index, frame.time_ns);
+  report.seconds.segment = segmenting;
   return report;
 }
 

@@ -28,6 +28,7 @@ class Tracker {
   StepReport step(std::span<const Observation> observations, int64_t frame_idx, int64_t time_ns);
 
   // The same from pictures: segmented with an online background model, one a camera, that the tracker keeps.
+  // Errors: throws std::runtime_error where an image has another size than the first.
   StepReport step(const Frame& frame);
 
   [[nodiscard]] const TrackerOptions& options() const;  // with everything unset filled in

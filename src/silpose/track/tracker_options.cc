@@ -13,12 +13,12 @@ TrackerOptions TrackerOptions::resolved() const {
   TrackerOptions all = *this;
   if (!all.num_layers) all.num_layers = thesis || all.num_particles ? 1 : 10;
   if (!all.num_particles) all.num_particles = *all.num_layers == 1 ? 1000 : 500;
-  const bool adaptive = !thesis && *all.num_layers > 1 && all.annealing == Annealing::kAdaptive;
-  if (!all.motion) all.motion = adaptive ? "first-order-filter" : "diffusion";
-  if (!all.sigma_deg) all.sigma_deg = 4;
+  if (!all.motion) all.motion = "diffusion";
+  // Layers add noise again and again: what a plain filter needs once would blur them.
+  if (!all.sigma_deg) all.sigma_deg = *all.num_layers == 1 ? 4 : 2;
   if (!all.resampling) all.resampling = thesis ? "comb" : "systematic";
   if (!all.regenerate) all.regenerate = thesis ? 0.2 : 0.0;
-  if (!all.sharpness) all.sharpness = adaptive ? 200 : 100;
+  if (!all.sharpness) all.sharpness = 100;
   if (!all.estimate) all.estimate = Estimate::kMean;
   return all;
 }
@@ -45,14 +45,8 @@ void TrackerOptions::check() const {
           fmt::format("initial pose of {} numbers for {} DOF", initial_pose ? initial_pose->size() : 0, num_dofs));
   const auto resampler = make_resampler(*all.resampling, *all.regenerate);
   require(resampler.ok(), resampler.ok() ? "" : resampler.error().message);
-  const bool adaptive = preset != "thesis" && *all.num_layers > 1 && annealing == Annealing::kAdaptive;
-  if (adaptive) {
-    require(*all.motion == "diffusion" || *all.motion == "first-order-filter",
-            fmt::format("motion '{}' does not go with adaptive layers; diffusion and first-order-filter do", *all.motion));
-  } else {
-    const auto model = make_motion_model(*all.motion, body->skeleton, {});
-    require(model.ok(), model.ok() ? "" : model.error().message);
-  }
+  const auto model = make_motion_model(*all.motion, body->skeleton, {});
+  require(model.ok(), model.ok() ? "" : model.error().message);
 }
 
 }  // namespace silpose

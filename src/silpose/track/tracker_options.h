@@ -16,19 +16,12 @@ namespace silpose {
 
 enum class Estimate { kMean, kMode, kCluster };
 
-// How the layers of an annealed filter move particles.
-enum class Annealing {
-  kAdaptive,   // noise of a full covariance, learned from the best (filter/adaptive_search.h)
-  kCrossover,  // independent noise that shrinks, and limbs taken from two parents (filter/annealed_filter.h)
-};
-
 struct TrackerOptions {
   std::shared_ptr<const BodyModel> body;       // full mesh; the tracker makes its own level of detail
   std::vector<PinholeCamera> cameras;          // [C]
   std::string preset = "default";              // "default" or "thesis"; fills what is left unset below
   std::optional<int> num_particles;            // per layer; set alone it makes the filter plain
   std::optional<int> num_layers;               // 1: plain
-  Annealing annealing = Annealing::kAdaptive;
   std::optional<std::string> motion;           // motion/motion_model.h
   std::optional<double> sigma_deg;             // of a typical rotational DOF per 1/30 s; the others scale with it
   std::optional<std::string> resampling;       // filter/resampling.h

@@ -25,7 +25,6 @@ class TubeProposal : public Proposal {
 struct Variant {
   std::string name, preset = "default";
   int particles = 200, layers = 1;
-  Annealing annealing = Annealing::kAdaptive;
 };
 
 class TrackerTest : public ::testing::TestWithParam<Variant> {
@@ -37,7 +36,6 @@ class TrackerTest : public ::testing::TestWithParam<Variant> {
     options.preset = GetParam().preset;
     options.num_particles = GetParam().particles;
     options.num_layers = GetParam().layers;
-    options.annealing = GetParam().annealing;
     options.proposal = std::make_shared<TubeProposal>();
     return options;
   }
@@ -137,8 +135,7 @@ TEST_P(TrackerTest, AnotherSeedGivesAnotherResult) {
 
 INSTANTIATE_TEST_SUITE_P(
     Filters, TrackerTest,
-    ::testing::Values(Variant{.name = "adaptive", .particles = 60, .layers = 8}, Variant{.name = "plain"},
-                      Variant{.name = "crossover", .particles = 60, .layers = 8, .annealing = Annealing::kCrossover},
+    ::testing::Values(Variant{.name = "annealed", .particles = 60, .layers = 8}, Variant{.name = "plain"},
                       Variant{.name = "thesis", .preset = "thesis"}),
     [](const auto& variant) { return variant.param.name; });
 
