@@ -57,11 +57,6 @@ function(silpose_module NAME)
   list(FILTER sources EXCLUDE REGEX "_test\\.cc$")
   list(FILTER tests INCLUDE REGEX "_test\\.cc$")
 
-  if(NOT sources)  # TEMP
-    add_library(silpose_${NAME} INTERFACE)
-    add_library(silpose::${NAME} ALIAS silpose_${NAME})
-    return()
-  endif()
   list(TRANSFORM arg_DEPENDS PREPEND silpose_ OUTPUT_VARIABLE dependencies)
   add_library(silpose_${NAME} STATIC ${sources})
   add_library(silpose::${NAME} ALIAS silpose_${NAME})

@@ -9,7 +9,7 @@
 #include "silpose/base/parallel.h"
 #include "silpose/filter/estimate.h"
 #include "silpose/motion/common_poses.h"
-#include "silpose/segment/segmenter.h"
+#include "silpose/segment/background_segmenter.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/pose_estimate.h"
@@ -154,7 +154,7 @@ StepReport Tracker::step(const Frame& frame) {
   const Stopwatch stopwatch;
   std::vector<Observation> observations;
   for (size_t c = 0; c < frame.images.size(); ++c) {
-    if (t.segmenters.size() <= c) t.segmenters.push_back(make_segmenter("", {.background = "online"}).value());
+    if (t.segmenters.size() <= c) t.segmenters.push_back(make_online_segmenter(OnlineMixture::kMog2, {}));
     observations.push_back(observation_from(t.segmenters[c]->segment(frame.images[c], frame.index).value()));
   }
   const double segmenting = stopwatch.seconds();
