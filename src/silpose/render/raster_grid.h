@@ -31,7 +31,7 @@ inline int32_t first_centre_from(int32_t grid) { return (grid + kGridPerPixel - 
 using Float4 = float __attribute__((vector_size(16)));
 using Int4 = int32_t __attribute__((vector_size(16)));
 
-// Image coordinates to the grid: nearest, halves away from zero, clamped to the limit. Of NaN nothing is promised.
+// Image coordinates to the grid: nearest, halves away from zero, clamped to the limit; NaN goes to the lower one.
 struct GridAxis {
   GridAxis(double origin, double scale)
       : slope(static_cast<float>(scale * kGridPerPixel)), offset(static_cast<float>(-origin * scale * kGridPerPixel)) {}
@@ -40,9 +40,12 @@ struct GridAxis {
   // Twice the rest, truncated, is the 1 or -1 by which truncation has to be put right.
   [[nodiscard]] Int4 round(const Eigen::Array4f& pixel) const {
     constexpr auto kLimit = static_cast<float>(kGridLimit);
-    const Eigen::Array4f clamped = (pixel * slope + offset).max(-kLimit).min(kLimit);
+    constexpr Float4 kLowest = {-kLimit, -kLimit, -kLimit, -kLimit}, kHighest = {kLimit, kLimit, kLimit, kLimit};
+    const Eigen::Array4f exact = pixel * slope + offset;
     Float4 grid;
-    std::memcpy(&grid, clamped.data(), sizeof grid);
+    std::memcpy(&grid, exact.data(), sizeof grid);
+    grid = grid > kLowest ? grid : kLowest;
+    grid = grid < kHighest ? grid : kHighest;
     const Int4 whole = __builtin_convertvector(grid, Int4);
     const Float4 rest = grid - __builtin_convertvector(whole, Float4);
     return whole + __builtin_convertvector(rest + rest, Int4);
