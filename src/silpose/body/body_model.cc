@@ -11,7 +11,7 @@ namespace {
 
 // A joint's skinning transform as four columns of four floats (the fourth unused): one SIMD register each.
 struct Columns {
-  Eigen::Vector4f c[4];
+  std::array<Eigen::Vector4f, 4> c;
 };
 
 Columns columns(const Rigid3& world_from_rest) {
@@ -82,6 +82,7 @@ std::vector<std::string> landmark_names(const BodyModel& body) {
 std::vector<Eigen::Vector3d> landmark_positions(const BodyModel& body, std::span<const double> pose) {
   const std::vector<Rigid3> world_from_joint = body.skeleton.forward_kinematics(pose);
   std::vector<Eigen::Vector3d> positions;
+  positions.reserve(world_from_joint.size() + body.end_points.size());
   for (const Rigid3& transform : world_from_joint) positions.push_back(transform.translation);
   for (const BodyModel::EndPoint& end_point : body.end_points) {
     positions.push_back(world_from_joint[end_point.joint_idx] * end_point.offset_in_joint);

@@ -98,6 +98,7 @@ std::optional<int> find_part(const std::vector<std::string>& names, std::string_
   const auto aliases = std::find_if(kAliases.begin(), kAliases.end(), [&](const Aliases& a) { return a.part == part; });
   if (aliases == kAliases.end()) return std::nullopt;
   std::vector<PlainName> plain;
+  plain.reserve(names.size());
   for (const std::string& name : names) plain.push_back(plain_name(name));
   for (const std::string_view word : aliases->words) {
     for (size_t i = 0; i < plain.size(); ++i) {
