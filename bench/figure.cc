@@ -37,8 +37,7 @@ Figure measure(const Contest& contest, const std::function<void()>& ours, const 
                 .unit = contest.unit,
                 .peer = contest.peer,
                 .peer_value = quantile(their_values, 0.5)};
-  figure.ratio =
-      contest.higher_is_better ? figure.value / figure.peer_value : figure.peer_value / figure.value;
+  figure.ratio = contest.higher_is_better ? figure.value / figure.peer_value : figure.peer_value / figure.value;
   figure.spread = (quantile(our_values, 0.75) - quantile(our_values, 0.25)) / figure.value;
   return figure;
 }

@@ -9,7 +9,7 @@
 namespace silpose::bench {
 
 struct Figure {
-  double value = 0;       // median over the rounds
+  double value = 0;  // median over the rounds
   std::string unit;
   std::string peer;       // what ran in the same run
   double peer_value = 0;  // median over the rounds

@@ -50,14 +50,15 @@ int main(int argc, char** argv) {
     if (!names.empty() && std::ranges::find(names, entry.name) == names.end()) continue;
     try {
       const Figure figure = entry.run();
-      report[entry.name] = {{"value", figure.value}, {"unit", figure.unit},   {"peer", figure.peer},
+      report[entry.name] = {{"value", figure.value},           {"unit", figure.unit},   {"peer", figure.peer},
                             {"peer_value", figure.peer_value}, {"ratio", figure.ratio}, {"spread", figure.spread}};
       if (!as_json) {
         fmt::print("{:<18} {:>12.4g} {:<8} {:>8.2f} x {} ({:.4g}); spread {:.1f} %\n", entry.name, figure.value,
                    figure.unit, figure.ratio, figure.peer, figure.peer_value, 100 * figure.spread);
       }
     } catch (const std::exception& failure) {
-      if (as_json) fmt::print("{}\n", nlohmann::json{{"error", fmt::format("{}: {}", entry.name, failure.what())}}.dump());
+      if (as_json)
+        fmt::print("{}\n", nlohmann::json{{"error", fmt::format("{}: {}", entry.name, failure.what())}}.dump());
       fmt::print(stderr, "silpose_bench: {}: {}\n", entry.name, failure.what());
       return 1;
     }

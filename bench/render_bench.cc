@@ -35,7 +35,8 @@ std::vector<double> random_poses(const BodyModel& body, size_t count) {
 
 Figure likelihood(std::shared_ptr<const BodyModel> body, size_t num_poses) {
   const PinholeCamera camera = default_camera(640, 480);
-  const Window window{.x0 = 160, .y0 = 130, .scale_x = kSize / 320.0, .scale_y = kSize / 320.0, .width = kSize, .height = kSize};
+  const Window window{
+      .x0 = 160, .y0 = 130, .scale_x = kSize / 320.0, .scale_y = kSize / 320.0, .width = kSize, .height = kSize};
   const auto num_dofs = static_cast<size_t>(body->skeleton.num_dofs());
   const std::vector<double> poses = random_poses(*body, num_poses + 1);
   const auto pose = [&](size_t n) { return std::span(poses).subspan(n * num_dofs, num_dofs); };
@@ -106,19 +107,20 @@ Figure xor_us(int size) {
   verify(xor_count(mask_a, mask_b) == cv::countNonZero(difference), "XOR count");
 
   constexpr int kRepeats = 2000;
-  return measure({.unit = "us",
-                  .peer = "OpenCV bitwise_xor and countNonZero on bytes",
-                  .higher_is_better = false,
-                  .value_at_one_second = 1e6 / kRepeats},
-                 [&] {
-                   for (int i = 0; i < kRepeats; ++i) keep(xor_count(mask_a, mask_b));
-                 },
-                 [&] {
-                   for (int i = 0; i < kRepeats; ++i) {
-                     cv::bitwise_xor(a, b, difference);
-                     keep(cv::countNonZero(difference));
-                   }
-                 });
+  return measure(
+      {.unit = "us",
+       .peer = "OpenCV bitwise_xor and countNonZero on bytes",
+       .higher_is_better = false,
+       .value_at_one_second = 1e6 / kRepeats},
+      [&] {
+        for (int i = 0; i < kRepeats; ++i) keep(xor_count(mask_a, mask_b));
+      },
+      [&] {
+        for (int i = 0; i < kRepeats; ++i) {
+          cv::bitwise_xor(a, b, difference);
+          keep(cv::countNonZero(difference));
+        }
+      });
 }
 
 }  // namespace

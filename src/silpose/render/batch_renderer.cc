@@ -1,3 +1,4 @@
+#include <optional>
 #include <utility>
 
 #include "silpose/base/check.h"

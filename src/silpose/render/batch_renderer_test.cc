@@ -115,9 +115,9 @@ TEST_F(BatchRendererTest, ReadsRowsAtTheirStride) {
 
 TEST_F(BatchRendererTest, UnseenAndBrokenPosesCountNothing) {
   std::vector<double> poses(3 * num_dofs_, 0.0);
-  poses[2] = 20;                                            // root_tz: behind the camera
+  poses[2] = 20;  // root_tz: behind the camera
   poses[num_dofs_] = std::numeric_limits<double>::quiet_NaN();
-  poses[2 * num_dofs_] = 50;                                // root_tx: beside the picture
+  poses[2 * num_dofs_] = 50;  // root_tx: beside the picture
   const Mask observed(32, 32);
   std::vector<Counts> counts(3, {.model = 7, .both = 7});
   const BatchRenderer renderer(body_, camera_);
@@ -132,8 +132,9 @@ TEST_F(BatchRendererTest, RefusesOtherSizes) {
   std::vector<Counts> counts(200), few(3);
   EXPECT_THROW(renderer.counts(view(poses_), {.width = 8, .height = 8}, Mask(8, 9), counts), std::invalid_argument);
   EXPECT_THROW(renderer.counts(view(poses_), {.width = 8, .height = 8}, Mask(8, 8), few), std::invalid_argument);
-  EXPECT_THROW(renderer.counts({poses_.data(), 1, 3, 3}, {.width = 8, .height = 8}, Mask(8, 8), std::span(few).first(1)),
-               std::invalid_argument);
+  EXPECT_THROW(
+      renderer.counts({poses_.data(), 1, 3, 3}, {.width = 8, .height = 8}, Mask(8, 8), std::span(few).first(1)),
+      std::invalid_argument);
   EXPECT_THROW(BatchRenderer(nullptr, camera_), std::invalid_argument);
 }
 

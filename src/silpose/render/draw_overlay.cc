@@ -22,7 +22,9 @@ cv::Mat view_of(ByteImage& picture) {
 cv::Scalar scalar_of(Colour colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
 
 // Lines and dots that keep their weight whatever the picture's size.
-int line_width(const ByteImage& picture) { return std::max(1, static_cast<int>(std::lround(picture.height() / 360.0))); }
+int line_width(const ByteImage& picture) {
+  return std::max(1, static_cast<int>(std::lround(picture.height() / 360.0)));
+}
 
 cv::Point fixed_point(const Eigen::Vector2d& pixel) {
   static constexpr double kFar = 16384;  // what lies further out is not seen anyway, and would overflow

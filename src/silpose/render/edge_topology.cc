@@ -7,8 +7,8 @@ namespace silpose {
 namespace {
 
 struct HalfEdge {
-  uint32_t low, high;    // its vertices, in order of index
-  bool upwards;          // the face runs along it from low to high
+  uint32_t low, high;  // its vertices, in order of index
+  bool upwards;        // the face runs along it from low to high
   uint32_t face, side;
 };
 

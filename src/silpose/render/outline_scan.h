@@ -45,8 +45,8 @@ class OutlineScan {
   void grow_rows();
 
   const EdgeTopology* topology_;
-  std::vector<int8_t> facing_;      // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
-  std::vector<uint32_t> outline_;   // [edges] the first num_outline_ are edges whose two faces differ
+  std::vector<int8_t> facing_;     // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
+  std::vector<uint32_t> outline_;  // [edges] the first num_outline_ are edges whose two faces differ
   size_t num_outline_ = 0;
   std::vector<OutlineEdge> edges_;  // [edges] the first num_edges_ cross a row
   size_t num_edges_ = 0;

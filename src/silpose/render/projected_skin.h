@@ -27,11 +27,11 @@ class ProjectedSkin {
   // What one thread needs, and where project() leaves the pixels.
   struct Scratch {
     std::vector<Rigid3> world_from_joint;
-    std::vector<Eigen::Array4f> matrices;         // [J, 12] each number four times
-    std::vector<Eigen::Array4f> x, y, depth;      // [chunks] pixels; NaN where unseen
-    PixelBounds bounds;                           // of what is seen
+    std::vector<Eigen::Array4f> matrices;     // [J, 12] each number four times
+    std::vector<Eigen::Array4f> x, y, depth;  // [chunks] pixels; NaN where unseen
+    PixelBounds bounds;                       // of what is seen
     bool some_unseen = false;
-    std::vector<GridPoint> points;                // [slots] what round() makes of them
+    std::vector<GridPoint> points;  // [slots] what round() makes of them
   };
 
   // Projects a pose [D]. False when nothing is seen, or when the pose has a number that is not finite.

@@ -17,8 +17,11 @@ constexpr int kSamples = 2;  // a pixel, along each axis
 // A mesh as a camera sees it on a raster of `scale` samples a pixel.
 struct ProjectedMesh {
   ProjectedMesh(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world, int scale)
-      : width(camera.width * scale), height(camera.height * scale), pixels(vertices_in_world.size()),
-        points(vertices_in_world.size()), inverse_depth(vertices_in_world.size()) {
+      : width(camera.width * scale),
+        height(camera.height * scale),
+        pixels(vertices_in_world.size()),
+        points(vertices_in_world.size()),
+        inverse_depth(vertices_in_world.size()) {
     project_vertices(camera, vertices_in_world, pixels);
     const double s = scale;
     round_to_grid(pixels, {.scale_x = s, .scale_y = s, .width = width, .height = height}, points);
@@ -123,8 +126,8 @@ void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
                  std::span<const Face> faces, std::span<const Eigen::Vector3f> colours, const Lighting& lighting,
                  ByteImage& picture) {
   check(picture.width() == camera.width && picture.height() == camera.height && picture.channels() == 3,
-        "draw_shaded: picture of {}x{}x{} for a camera of {}x{}", picture.width(), picture.height(),
-        picture.channels(), camera.width, camera.height);
+        "draw_shaded: picture of {}x{}x{} for a camera of {}x{}", picture.width(), picture.height(), picture.channels(),
+        camera.width, camera.height);
   check(colours.size() == vertices_in_world.size(), "draw_shaded: {} colours for {} vertices", colours.size(),
         vertices_in_world.size());
   if (lighting.shadow > 0 && lighting.to_light.y() > 0) {
@@ -151,7 +154,8 @@ void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
       if (static_cast<float>(inverse_depth) <= nearest) return;
       nearest = static_cast<float>(inverse_depth);
       const Eigen::Vector3f w = weights.cast<float>();
-      Eigen::Map<Eigen::Vector3f>(&shade.at(x, y)) = w[0] * shades[face[0]] + w[1] * shades[face[1]] + w[2] * shades[face[2]];
+      Eigen::Map<Eigen::Vector3f>(&shade.at(x, y)) =
+          w[0] * shades[face[0]] + w[1] * shades[face[1]] + w[2] * shades[face[2]];
     });
   }
 

@@ -46,7 +46,8 @@ TEST_F(ShadedTest, DepthOfATiltedPlaneIsExact) {
   for (int y = 0; y < 120; y += 7) {
     for (int x = 0; x < 160; x += 7) {
       if (depth.at(x, y) == 0) continue;
-      const Eigen::Vector3d ray = camera_.cam_from_world.rotation.transpose() * camera_.ray_from_pixel({x + 0.5, y + 0.5});
+      const Eigen::Vector3d ray =
+          camera_.cam_from_world.rotation.transpose() * camera_.ray_from_pixel({x + 0.5, y + 0.5});
       EXPECT_NEAR(depth.at(x, y), -camera_.centre_in_world().y() / ray.y(), 2e-3);
       ++seen;
     }

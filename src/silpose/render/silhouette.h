@@ -29,7 +29,8 @@ struct EdgeTopology {
   std::vector<Face> faces;                        // [F]
   std::vector<std::array<int32_t, 3>> neighbour;  // [F] across edges (0,1), (1,2), (2,0)
 
-  // Every edge once: from `vertices[0]` to `vertices[1]` along faces[0], the other way along faces[1]; F stands for none.
+  // Every edge once: from `vertices[0]` to `vertices[1]` along faces[0], the other way along faces[1]; F stands for
+  // none.
   struct Edges {
     std::vector<std::array<uint32_t, 2>> vertices, faces;
   } edges;
@@ -59,8 +60,8 @@ class OutlineRenderer {
 
   // Counts of a drawn silhouette against an observed mask of the window's size, without keeping the drawing.
   struct Counts {
-    int64_t model = 0;       // pixels of the silhouette
-    int64_t both = 0;        // pixels set in both
+    int64_t model = 0;  // pixels of the silhouette
+    int64_t both = 0;   // pixels set in both
   };
   Counts count(std::span<const Eigen::Vector2f> pixels, const Window& window, const Mask& observed);
 

@@ -44,8 +44,9 @@ Shape closed_grid(int rings, int sectors, double radius, double noise, Rng& rng)
     for (int s = 0; s < sectors; ++s) {
       const double a = 2 * kPi * r / rings, b = 2 * kPi * s / sectors;
       const double ring = radius * (0.65 + 0.35 * std::cos(b));
-      shape.pixels.emplace_back(static_cast<float>(32 + ring * std::cos(a) + noise * rng.normal()),
-                                static_cast<float>(32 + 0.8 * ring * std::sin(a) + 6 * std::sin(b) + noise * rng.normal()));
+      shape.pixels.emplace_back(
+          static_cast<float>(32 + ring * std::cos(a) + noise * rng.normal()),
+          static_cast<float>(32 + 0.8 * ring * std::sin(a) + 6 * std::sin(b) + noise * rng.normal()));
     }
   }
   const auto index = [&](int r, int s) { return static_cast<uint32_t>((r % rings) * sectors + s % sectors); };

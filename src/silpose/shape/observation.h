@@ -1,5 +1,5 @@
-// Observation: what the tracker is told about one camera at one instant: the mask of the subject and how far to trust it.
-// Threads: a value.
+// Observation: what the tracker is told about one camera at one instant: the mask of the subject and how far to trust
+// it. Threads: a value.
 #pragma once
 
 #include "silpose/image/mask.h"
@@ -7,15 +7,15 @@
 namespace silpose {
 
 struct Trust {
-  double overall = 1;          // 0: ignore this frame (the tracker coasts); 1: as good as a given mask
-  bool nothing_found = false;  // no blob counts
-  bool touches_border = false; // part of the subject may be outside the picture
-  bool area_jumped = false;    // area changed by more than the segmenter's limit against the recent median
+  double overall = 1;           // 0: ignore this frame (the tracker coasts); 1: as good as a given mask
+  bool nothing_found = false;   // no blob counts
+  bool touches_border = false;  // part of the subject may be outside the picture
+  bool area_jumped = false;     // area changed by more than the segmenter's limit against the recent median
 };
 
 struct Observation {
-  Mask mask;   // whole image, the chosen blob
-  Box box;     // its bounding box
+  Mask mask;  // whole image, the chosen blob
+  Box box;    // its bounding box
   Trust trust;
 };
 
