@@ -110,9 +110,9 @@ class TrackRun {
       const StepReport report = tracker->step(instant.observations, instant.frame.index, instant.frame.time_ns);
       const Stopwatch writing;
       const Result<void> recorded = recorder.put(report);
-      if (!recorded) return recorded;
+      if (!recorded) return recorded.failure();
       const Result<void> written = writer.add_frame(instant, report);
-      if (!written) return written;
+      if (!written) return written.failure();
       seconds_.write += writing.seconds();
       seconds_.decode += instant.decode_s;
       seconds_.segment += instant.segment_s;

@@ -22,7 +22,7 @@ Result<void> TrackWriter::add_frame(const Instant& instant, const StepReport& re
     std::filesystem::create_directories(folder, failed);
     const Result<void> written =
         write_mask(folder / fmt::format("{:06}.png", instant.frame.index), instant.observations[c].mask);
-    if (!written) return written;
+    if (!written) return written.failure();
   }
   ByteImage picture = instant.frame.images[0];
   if (!report.pose.empty()) draw_overlay(picture, *body_, cameras_[0], report.pose);
