@@ -20,8 +20,26 @@ bool parse_number(const std::string& text, double& number) {
 
 }  // namespace
 
+CLI::Validator within(double low, double high) {
+  return CLI::Validator(
+      [low, high](const std::string& text) -> std::string {
+        double number = 0;
+        if (parse_number(text, number) && number >= low && number <= high) return "";
+        return fmt::format("{} is not a number from {:g} to {:g}", text, low, high);
+      },
+      fmt::format("{:g} to {:g}", low, high));
+}
+
 void add_common_options(CLI::App& command, CommonOptions& common) {
-  command.add_option("--seed", common.seed, "Of all random numbers (same seed, same bytes)")->capture_default_str();
+  command.add_option("--seed", common.seed, "Of all random numbers (same seed, same bytes)")
+      ->capture_default_str()
+      ->check(CLI::Validator(
+          [](const std::string& text) -> std::string {
+            uint64_t seed = 0;
+            const auto [end, bad] = std::from_chars(text.data(), text.data() + text.size(), seed);
+            return bad == std::errc() && end == text.data() + text.size() ? "" : text + " is not a whole number from 0";
+          },
+          ""));
   command.add_option("--threads", common.threads, "At most this many (0: all cores)")->check(CLI::Range(0, 1024));
   command.add_flag("--quiet", common.quiet, "No progress, no messages");
   command.add_flag("--json", common.json, "One JSON object on standard output");

@@ -41,6 +41,7 @@ struct Outcome {
 struct Command {
   CLI::App* app = nullptr;
   std::function<Result<Outcome>(Console&)> run;
+  const std::string* option_file = nullptr;  // --config, where the command has it
 };
 
 // --seed, --threads, --quiet, --json and --help.
@@ -52,6 +53,9 @@ Command add_evaluate(CLI::App& program, const CommonOptions& common);
 Command add_segment(CLI::App& program, const CommonOptions& common);
 Command add_render(CLI::App& program, const CommonOptions& common);
 std::vector<Command> add_model(CLI::App& program, CommonOptions& common);
+
+// A check for options: a finite number from `low` to `high`, both included.
+CLI::Validator within(double low, double high);
 
 // "640x480". Errors: not of that form, outside 16 to 8192.
 struct Size {

@@ -20,11 +20,12 @@ struct EvaluateCommandOptions {
 std::string model_of(const std::filesystem::path& directory) {
   std::ifstream file(directory / "run.json");
   const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
-  return run.is_object() ? run.value("model", "human") : "human";
+  if (!run.is_object() || !run.contains("model") || !run["model"].is_string()) return "human";
+  return run["model"].get<std::string>();
 }
 
 Result<Outcome> run_evaluate(const EvaluateCommandOptions& options, Console& console) {
-  if (options.evaluation.end_s < options.evaluation.start_s) throw UsageError("--start is after --end");
+  if (options.evaluation.end_s <= options.evaluation.start_s) throw UsageError("--start is not before --end");
   const auto body = choose_body(options.model.empty() ? model_of(options.result) : options.model, console);
   if (!body) return body.failure();
   const Result<Recorded> result = read_recorded(options.result, (*body)->skeleton);
@@ -58,8 +59,8 @@ Command add_evaluate(CLI::App& program, const CommonOptions&) {
   CLI::App* const app = program.add_subcommand("evaluate", "Errors of a result against a truth");
   app->add_option("--result", options->result, "Directory of a result")->required();
   app->add_option("--truth", options->truth, "Directory of a truth")->required();
-  app->add_option("--start", options->evaluation.start_s, "Seconds: only what is not before");
-  app->add_option("--end", options->evaluation.end_s, "Seconds: only what is before");
+  app->add_option("--start", options->evaluation.start_s, "Seconds: only what is not before")->check(within(-1e6, 1e6));
+  app->add_option("--end", options->evaluation.end_s, "Seconds: only what is before")->check(within(-1e6, 1e6));
   app->add_option("--model", options->model, "The body of the result; default: as its run.json says");
   return {app, [options](Console& console) { return run_evaluate(*options, console); }};
 }

@@ -27,8 +27,15 @@ int fail(Console& console, bool json, const std::string& message, int status) {
   return status;
 }
 
-int run_command(const Command& command, const CommonOptions& common, Console& console) {
+int run_command(const Command& command, const CommonOptions& common) {
   try {
+    if (command.option_file != nullptr && !command.option_file->empty()) {
+      const Result<void> applied = apply_option_file(*command.option_file, *command.app);
+      if (!applied) {
+        Console console(common.quiet);
+        return fail(console, common.json, applied.error().message, kFailure);
+      }
+    }
     const ThreadLimit limit(common.threads);
     Console::watch_interrupts();
     const Result<Outcome> outcome = command.run(console);

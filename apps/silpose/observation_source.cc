@@ -39,7 +39,7 @@ Result<CleanUpOptions> clean_up_options(const InputOptions& options, const Video
   const auto count = static_cast<size_t>(video.num_cameras());
   CleanUpOptions clean_up;
   clean_up.grow_px = options.grow_px;
-  clean_up.min_blob_px = options.min_blob_px;
+  if (options.min_blob_px) clean_up.min_blob_px = *options.min_blob_px;
   const std::string region = of_camera("--region", options.regions, camera, count, "");
   if (!region.empty()) clean_up.region = parse_region(region);
   const std::string garbage = of_camera("--garbage-mask", options.garbage_masks, camera, count, "");
@@ -77,15 +77,14 @@ void add_input_options(CLI::App& command, InputOptions& options) {
   command.add_option("--grow", options.grow_px, "Grows the mask by so many pixels; negative shrinks")
       ->capture_default_str()
       ->check(CLI::Range(-64, 64));
-  command.add_option("--min-blob", options.min_blob_px, "Pixels below which a blob does not count")
-      ->capture_default_str()
+  command.add_option("--min-blob", options.min_blob_px, "Pixels below which a blob does not count (0.05 % of the picture)")
       ->check(CLI::Range(0, 100'000'000));
   command
       .add_option("--fps", options.default_fps, "Frames a second of input that carries no rate (30, with a warning)")
-      ->check(CLI::Range(0.1, 10000.0));
-  command.add_option("--start", options.start_s, "Seconds into the clip to begin at")->check(CLI::NonNegativeNumber);
+      ->check(within(0.1, 10000));
+  command.add_option("--start", options.start_s, "Seconds into the clip to begin at")->check(within(0, 1e6));
   command.add_option("--end", options.end_s, "Seconds into the clip to end at, included")
-      ->check(CLI::NonNegativeNumber);
+      ->check(within(0, 1e6));
 }
 
 Result<ObservationSource> ObservationSource::open(const InputOptions& options, Console& console) {

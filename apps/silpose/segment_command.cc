@@ -85,13 +85,8 @@ Command add_segment(CLI::App& program, const CommonOptions& common) {
   add_input_options(*app, options->input);
   app->add_option("--out", options->out, "Directory for masks/ and run.json");
   app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
-  return {app, [app, options, &common](Console& console) -> Result<Outcome> {
-            if (!options->config.empty()) {
-              const Result<void> applied = apply_option_file(options->config, *app);
-              if (!applied) return applied.failure();
-            }
-            return run_segment(*app, *options, common, console);
-          }};
+  return {app, [app, options, &common](Console& console) { return run_segment(*app, *options, common, console); },
+          &options->config};
 }
 
 }  // namespace silpose::app

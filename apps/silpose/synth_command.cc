@@ -45,6 +45,9 @@ Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions&
   for (const std::string& text : options.views) {
     const Result<View> view = parse_view(text);
     if (!view) throw UsageError(fmt::format("--view: {}", view.error().message));
+    for (const View& other : scene.views) {
+      if (other.name == view->name) throw UsageError(fmt::format("--view: {} is there twice", text));
+    }
     scene.views.push_back(*view);
   }
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
@@ -122,11 +125,11 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
   app->add_option("--motion", options->motion, "FILE.bvh, static, dof:INDEX, circle, sway or random")
       ->capture_default_str();
   app->add_option("--amplitude-deg", options->amplitude_deg, "How far sway, circle and random go")
-      ->check(CLI::Range(0.0, 180.0));
-  app->add_option("--period", options->period_s, "Seconds a swing takes")->check(CLI::Range(0.01, 1e6));
+      ->check(within(0, 180));
+  app->add_option("--period", options->period_s, "Seconds a swing takes")->check(within(0.01, 1e6));
   app->add_option("--frames", options->frames, "Of the motion; default 80, or the whole of a BVH file")
       ->check(CLI::Range(1, 1'000'000));
-  app->add_option("--fps", options->fps, "Frames a second")->capture_default_str()->check(CLI::Range(0.1, 10000.0));
+  app->add_option("--fps", options->fps, "Frames a second")->capture_default_str()->check(within(0.1, 10000));
   app->add_option("--view", options->views, "front, side, or degrees round the subject; repeat it for several cameras")
       ->allow_extra_args(false);
   app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
@@ -138,13 +141,8 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
   app->add_option("--lead-in", options->lead_in, "Frames of the video before the subject is there")
       ->check(CLI::Range(0, 100'000));
   app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
-  return {app, [app, options, &common](Console& console) -> Result<Outcome> {
-            if (!options->config.empty()) {
-              const Result<void> applied = apply_option_file(options->config, *app);
-              if (!applied) return applied.failure();
-            }
-            return run_synth(*app, *options, common, console);
-          }};
+  return {app, [app, options, &common](Console& console) { return run_synth(*app, *options, common, console); },
+          &options->config};
 }
 
 }  // namespace silpose::app

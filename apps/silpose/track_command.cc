@@ -222,10 +222,6 @@ Command add_track(CLI::App& program, const CommonOptions& common) {
   CLI::App* const app = program.add_subcommand("track", "Track a person: VIDEO... --out DIR");
   add_track_options(*app, *options);
   return {app, [app, options, &common](Console& console) -> Result<Outcome> {
-            if (!options->config.empty()) {
-              const Result<void> applied = apply_option_file(options->config, *app);
-              if (!applied) return applied.failure();
-            }
             if (options->out.empty()) throw UsageError("--out is missing");
             if (options->input.videos.empty()) throw UsageError("VIDEO is missing");
             return TrackRun(*app, *options, common, console).run();

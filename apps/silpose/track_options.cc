@@ -17,21 +17,21 @@ void add_tracker_options(CLI::App& app, TrackOptions& options) {
   app.add_option("--preset", tracker.preset, "default, or thesis: two plain filters, root and pose")
       ->capture_default_str()
       ->check(CLI::IsMember({"default", "thesis"}));
-  app.add_option("--particles", tracker.num_particles, "Particles in a layer")->check(CLI::Range(1, 1'000'000));
-  app.add_option("--layers", tracker.num_layers, "Annealing layers; 1 is a plain filter")->check(CLI::Range(1, 1000));
+  app.add_option("--particles", tracker.num_particles, "Particles in a layer")->check(CLI::Range(2, 1'000'000));
+  app.add_option("--layers", tracker.num_layers, "Annealing layers; 1 is a plain filter")->check(CLI::Range(1, 200));
   app.add_option("--motion", tracker.motion, "How particles move between frames")
-      ->check(CLI::IsMember({"diffusion", "first-order-filter", "first-order-augmented"}));
+      ->check(CLI::IsMember({"diffusion", "first-order-augmented"}));
   app.add_option("--sigma-deg", tracker.sigma_deg, "Noise of a typical joint angle in 1/30 s")
-      ->check(CLI::Range(1e-3, 180.0));
+      ->check(within(1e-3, 90));
   app.add_option("--resampling", tracker.resampling, "Which particles go on")
       ->check(CLI::IsMember({"systematic", "comb"}));
   app.add_option("--resample-below", tracker.resample_below, "Only when n_eff is below this part of the particles")
       ->capture_default_str()
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(within(0, 1));
   app.add_option("--regenerate", tracker.regenerate, "Part of the comb's particles that is made anew")
-      ->check(CLI::Range(0.0, 0.99));
+      ->check(within(0, 0.99));
   app.add_option("--sharpness", tracker.sharpness, "How strongly better silhouettes are preferred")
-      ->check(CLI::Range(1e-3, 1e6));
+      ->check(within(1e-3, 1e6));
   app.add_option("--metric", options.metric, "How silhouettes are compared")
       ->capture_default_str()
       ->check(CLI::IsMember({"pixel-count"}));

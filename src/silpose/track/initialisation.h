@@ -14,9 +14,9 @@ namespace silpose {
 
 struct InitialisationOptions {
   int num_descended_per_heading = 2;  // the best of the placed candidates that face each of eight directions
-  int num_iterations = 25;  // of descent
-  int num_polished = 4;     // the best of those, each facing another direction, that are searched further
-  int num_particles = 200;  // of that search, a layer
+  int num_iterations = 25;            // of descent
+  int num_polished = 4;               // the best of those, each facing another direction, that are searched further
+  int num_particles = 200;            // of that search, a layer
   int num_layers = 20;
   double facing_bonus = 1;  // log-likelihood that facing the camera is worth; as much is lost by facing away
   uint64_t seed = 1;
@@ -27,8 +27,9 @@ struct StartingPose {
   double log_likelihood = 0;
 };
 
-// Starting poses, best first, at most options.num_polished, their log-likelihood without the bonus. Shapes: candidates [K, D]; their root translation is
-// replaced. REQUIRES: evidence in which some camera has a say, from an image-comparing likelihood.
+// Starting poses, best first, at most options.num_polished, their log-likelihood without the bonus. Shapes: candidates
+// [K, D]; their root translation is replaced. REQUIRES: evidence in which some camera has a say, from an
+// image-comparing likelihood.
 std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, const Evidence& evidence,
                                      const StateBatch& candidates, const InitialisationOptions& options = {});
 
