@@ -70,13 +70,13 @@ class TwoFilters final : public PoseFilter {
     particles_ = pose_filter_.particles();
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
-    const FilterReport report = pose_filter_.step(cropped_.prepare(observations), estimate_, dt_s, seconds);
+    FilterReport report = pose_filter_.step(cropped_.prepare(observations), estimate_, dt_s, seconds);
     if (!root_fixed_) root_filter_.step(whole_.prepare(observations), pose_filter_.estimate(), dt_s, seconds);
     combine();
     return report;
   }
   FilterReport coast(double dt_s) override {
-    const FilterReport report = pose_filter_.coast(dt_s);
+    FilterReport report = pose_filter_.coast(dt_s);
     root_filter_.coast(dt_s);
     combine();
     return report;

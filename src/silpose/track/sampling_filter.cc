@@ -87,7 +87,7 @@ FilterReport SamplingFilter::step(const Evidence& evidence, std::span<const doub
     motion_->diffuse(fresh, wide, seed_ ^ kRegenerateSeed, stream);
     for (size_t i = 0; i < rows.size(); ++i) states.row(rows[i]) = fresh.row(static_cast<Eigen::Index>(i));
   };
-  const FilterReport report = std::visit(
+  FilterReport report = std::visit(
       [&](auto& filter) -> FilterReport {
         if constexpr (std::is_same_v<std::decay_t<decltype(filter)>, ParticleFilter>) {
           return filter.step(propagate, weigh, regenerate);

@@ -18,12 +18,14 @@
 namespace silpose {
 namespace {
 
+// A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm.
+constexpr double kLeastTrust = 0.3;
 // After coasting for longer than this the subject may be anywhere: the next good mask starts over.
 constexpr double kLongestCoast_s = 1.0;
 
 bool any_has_a_say(std::span<const Observation> observations) {
   return std::any_of(observations.begin(), observations.end(),
-                     [](const Observation& o) { return !o.trust.nothing_found && o.trust.overall > 0; });
+                     [](const Observation& o) { return !o.trust.nothing_found && o.trust.overall >= kLeastTrust; });
 }
 
 // Standard deviation of each landmark's coordinates over the particles. [J + E]
@@ -51,7 +53,7 @@ std::vector<Eigen::Vector3d> landmark_spread(const BodyModel& body, const Partic
 }  // namespace
 
 struct Tracker::Impl {
-  explicit Impl(TrackerOptions given) : options(given.resolved()) {
+  explicit Impl(const TrackerOptions& given) : options(given.resolved()) {
     const auto lod = std::make_shared<const BodyModel>(level_of_detail(*options.body, options.lod_vertices));
     for (const PinholeCamera& camera : options.cameras) {
       renderers.push_back(std::make_shared<const BatchRenderer>(lod, camera));
@@ -105,7 +107,7 @@ struct Tracker::Impl {
   int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
 };
 
-Tracker::Tracker(TrackerOptions options) : impl_(std::make_unique<Impl>(std::move(options))) {}
+Tracker::Tracker(const TrackerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
 Tracker::~Tracker() = default;
 Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;

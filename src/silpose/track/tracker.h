@@ -19,7 +19,7 @@ namespace silpose {
 class Tracker {
  public:
   // Errors: throws std::invalid_argument as TrackerOptions::check().
-  explicit Tracker(TrackerOptions options);
+  explicit Tracker(const TrackerOptions& options);
   ~Tracker();
   Tracker(Tracker&&) noexcept;
   Tracker& operator=(Tracker&&) noexcept;

@@ -108,6 +108,21 @@ TEST_P(TrackerTest, WaitsUntilSomethingIsSeenThenCoastsWithGrowingSpread) {
   EXPECT_EQ(step(tracker, observe(45), 45).state, StepReport::State::kInitialised);
 }
 
+TEST_P(TrackerTest, CoastsOverABadMask) {
+  Tracker tracker(options());
+  for (int t = 0; t < 3; ++t) step(tracker, observe(t), t);
+  Observation bad = observe(3);
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 0; x < 320; ++x) bad.mask.set(x, y);
+  }
+  bad.box = bad.mask.bounding_box();
+  bad.trust = {.overall = 0.25, .area_jumped = true};
+  const StepReport report = step(tracker, bad, 3);
+  EXPECT_EQ(report.state, StepReport::State::kCoasted);
+  EXPECT_TRUE(report.trust[0].area_jumped);
+  EXPECT_NEAR(report.pose[0], truth(3)[0], 0.1);
+}
+
 TEST_P(TrackerTest, TheNumberOfThreadsChangesNothing) {
   std::vector<double> poses[2];
   for (const int threads : {1, 2}) {
