@@ -10,6 +10,7 @@
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/filter/adaptive_search.h"
+#include "silpose/track/limbs.h"
 #include "silpose/track/pose_estimate.h"
 
 namespace silpose {
@@ -198,9 +199,17 @@ std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, con
   starts.resize(std::min(starts.size(), static_cast<size_t>(options.num_polished)));
   for (size_t i = 0; i < starts.size(); ++i) starts[i] = polish(likelihood, evidence, starts[i], options, i);
   const PinholeCamera& camera = likelihood.renderers().front()->camera();
-  sort_best_first(starts, [&](const StartingPose& start) {
+  const auto with_bonus = [&](const StartingPose& start) {
     return start.log_likelihood + options.facing_bonus * faces_camera(likelihood.body(), camera, start.pose);
-  });
+  };
+  sort_best_first(starts, with_bonus);
+  uint64_t stream = starts.size();
+  for (std::vector<double>& variant : exchanged_limbs(skeleton, starts.front().pose)) {
+    StartingPose start{std::move(variant), 0};
+    likelihood.log_likelihood(evidence, one_state(start.pose), {&start.log_likelihood, 1});
+    starts.push_back(polish(likelihood, evidence, start, options, stream++));
+  }
+  sort_best_first(starts, with_bonus);
   return starts;
 }
 

@@ -27,7 +27,8 @@ struct StartingPose {
   double log_likelihood = 0;
 };
 
-// Starting poses, best first, at most options.num_polished, their log-likelihood without the bonus. Shapes: candidates
+// Starting poses, best first: the polished ones, and the best of them with limbs exchanged between left and right and
+// polished again. Their log-likelihood is without the bonus. Shapes: candidates
 // [K, D]; their root translation is replaced. REQUIRES: evidence in which some camera has a say, from an
 // image-comparing likelihood.
 std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, const Evidence& evidence,

@@ -1,6 +1,9 @@
 #include "silpose/track/limbs.h"
 
+#include <algorithm>
 #include <map>
+#include <string>
+#include <utility>
 
 namespace silpose {
 
@@ -34,6 +37,34 @@ std::vector<std::vector<int>> limb_blocks(const Skeleton& skeleton) {
   }
   if (dofs_of.contains(-1)) blocks.push_back(std::move(dofs_of[-1]));
   return blocks;
+}
+
+std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose) {
+  const auto name_without_side = [&](int d) {
+    const std::string& name = skeleton.dofs()[static_cast<size_t>(d)].name;
+    return name.starts_with("right_") ? name.substr(6) : name.starts_with("left_") ? name.substr(5) : name;
+  };
+  const auto alike = [&](const std::vector<int>& a, const std::vector<int>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [&](int i, int j) { return name_without_side(i) == name_without_side(j); });
+  };
+  const auto limbs = limb_blocks(skeleton);
+  std::vector<std::vector<double>> variants;
+  std::vector<double> all(pose.begin(), pose.end());
+  for (size_t i = 0; i < limbs.size(); ++i) {
+    for (size_t j = i + 1; j < limbs.size(); ++j) {
+      if (!alike(limbs[i], limbs[j])) continue;
+      std::vector<double> one(pose.begin(), pose.end());
+      for (size_t k = 0; k < limbs[i].size(); ++k) {
+        const auto a = static_cast<size_t>(limbs[i][k]), b = static_cast<size_t>(limbs[j][k]);
+        std::swap(one[a], one[b]);
+        std::swap(all[a], all[b]);
+      }
+      variants.push_back(std::move(one));
+    }
+  }
+  if (variants.size() > 1) variants.push_back(std::move(all));
+  return variants;
 }
 
 }  // namespace silpose

@@ -20,6 +20,8 @@ namespace {
 
 // A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm.
 constexpr double kLeastTrust = 0.3;
+// A start is looked at more closely than a step: what tells left from right, and front from back, is a few pixels.
+constexpr int kStartResolution = 256;
 // After coasting for longer than this the subject may be anywhere: the next good mask starts over.
 constexpr double kLongestCoast_s = 1.0;
 
@@ -65,7 +67,7 @@ struct Tracker::Impl {
   // The starting pose for what is seen: the given one, or by descent; the last estimate competes, too.
   std::vector<double> starting_pose(std::span<const Observation> observations) const {
     if (options.initial_pose && last_pose.empty()) return *options.initial_pose;
-    const SilhouetteLikelihood likelihood(renderers, {});
+    const SilhouetteLikelihood likelihood(renderers, {.resolution = kStartResolution});
     Rng rng(options.seed, static_cast<uint64_t>(steps));
     StateBatch candidates = options.proposal->propose(observations.front(), 0, rng);
     if (!last_pose.empty()) {
