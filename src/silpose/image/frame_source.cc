@@ -144,7 +144,7 @@ std::optional<Pattern> parse_pattern(const std::string& name) {
 Result<std::vector<fs::path>> pictures_of_pattern(const fs::path& input, const Pattern& pattern) {
   const fs::path folder = input.has_parent_path() ? input.parent_path() : fs::path(".");
   const Result<std::vector<fs::path>> files = files_in(folder);
-  if (!files) return files;
+  if (!files) return files.failure();
   std::vector<std::pair<int64_t, fs::path>> numbered;
   for (const fs::path& path : *files) {
     const std::string name = path.filename().string();

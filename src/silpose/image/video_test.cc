@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <fstream>
 
 #include "silpose/image/image_file.h"
@@ -166,7 +167,7 @@ TEST_F(VideoTest, NamesWhatIsNotAVideo) {
   std::ofstream(at("text.txt")) << "FFmpeg would draw these letters as a video\n";
   EXPECT_THAT(open_video(at("text.txt")).error().message, EndsWith("text.txt: not a video"));
   std::ofstream noise(at("noise.mp4"), std::ios::binary);
-  for (int i = 0; i < 20000; ++i) noise.put(static_cast<char>(i * i * 31 + i / 7));
+  for (uint32_t i = 0; i < 20000; ++i) noise.put(static_cast<char>(i * i * 31 + i / 7));
   noise.close();
   EXPECT_THAT(open_video(at("noise.mp4")).error().message, HasSubstr("noise.mp4: not a video"));
   fs::create_directory(at("folder"));
