@@ -76,6 +76,7 @@ void median_and_deviation(const std::vector<ByteImage>& images, ByteImage& media
     ByteCounts counts;
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
       std::vector<const uint8_t*> rows;
+      rows.reserve(images.size());
       for (const ByteImage& image : images) rows.push_back(image.row(y).data());
       const auto median_row = median.row(y);
       const auto noise_row = noise.row(y);

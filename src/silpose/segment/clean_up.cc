@@ -122,8 +122,8 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
       for (size_t i = 0; i < to.size(); ++i) to[i] &= keep[i];
     }
   }
-  const Mask nothing(cut.width(), cut.height());
-  if (cut.bounding_box().empty()) return nothing;
+  Mask blob(cut.width(), cut.height());
+  if (cut.bounding_box().empty()) return blob;
 
   // Labelled on a copy that is grown by half of the gap; counted in pixels of the mask itself.
   const cv::Mat mat = to_mat(cut);
@@ -155,8 +155,7 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
     if (static_cast<double>(area[label]) < min_area || 2 * inside[label] < area[label]) continue;
     if (best == 0 || area[label] > area[best]) best = label;
   }
-  if (best == 0) return nothing;
-  Mask blob(cut.width(), cut.height());
+  if (best == 0) return blob;
   for (int y = 0; y < cut.height(); ++y) {
     const int* row = labels.ptr<int>(y);
     for (int x = 0; x < cut.width(); ++x) {
