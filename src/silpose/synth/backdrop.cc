@@ -44,9 +44,11 @@ struct Poster {
 };
 
 std::vector<Poster> hang_posters(uint64_t seed) {
+  constexpr int kPosters = 9;
   std::vector<Poster> posters;
+  posters.reserve(kPosters);
   Rng rng(seed, 1);
-  for (int i = 0; i < 9; ++i) {
+  for (int i = 0; i < kPosters; ++i) {
     posters.push_back({-4.8 + 1.2 * i + rng.uniform(-0.2, 0.2),
                        rng.uniform(0.9, 2.3),
                        rng.uniform(0.2, 0.5),
