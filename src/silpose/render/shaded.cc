@@ -54,7 +54,7 @@ struct ProjectedMesh {
 std::vector<Eigen::Vector3f> vertex_normals(std::span<const Eigen::Vector3f> vertices, std::span<const Face> faces) {
   std::vector<Eigen::Vector3f> normals(vertices.size(), Eigen::Vector3f::Zero());
   for (const Face& face : faces) {
-    const Eigen::Vector3f a = vertices[face[0]];
+    const Eigen::Vector3f& a = vertices[face[0]];
     const Eigen::Vector3f normal = (vertices[face[1]] - a).cross(vertices[face[2]] - a);  // longer for larger faces
     for (const uint32_t vertex : face) normals[vertex] += normal;
   }
@@ -94,16 +94,17 @@ void draw_shadow(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
   }
 }
 
+const Eigen::Vector3f kSkin(0.52f, 0.62f, 0.82f), kShirt(0.62f, 0.34f, 0.24f), kTrousers(0.30f, 0.27f, 0.25f),
+    kShoes(0.14f, 0.14f, 0.16f), kNoClothing(0.6f, 0.6f, 0.6f);
+
 // A joint of the human and what the part it moves wears.
 Eigen::Vector3f clothing_of(std::string_view joint) {
-  const Eigen::Vector3f skin(0.52f, 0.62f, 0.82f), shirt(0.62f, 0.34f, 0.24f), trousers(0.30f, 0.27f, 0.25f),
-      shoes(0.14f, 0.14f, 0.16f);
   const auto ends = [&](std::string_view suffix) { return joint.ends_with(suffix); };
-  if (joint == "head" || ends("forearm") || ends("hand")) return skin;
-  if (joint == "abdomen" || joint == "thorax" || ends("shoulder") || ends("upper_arm")) return shirt;
-  if (joint == "root" || ends("hip") || ends("thigh") || ends("shin")) return trousers;
-  if (ends("foot")) return shoes;
-  return {0.6f, 0.6f, 0.6f};
+  if (joint == "head" || ends("forearm") || ends("hand")) return kSkin;
+  if (joint == "abdomen" || joint == "thorax" || ends("shoulder") || ends("upper_arm")) return kShirt;
+  if (joint == "root" || ends("hip") || ends("thigh") || ends("shin")) return kTrousers;
+  if (ends("foot")) return kShoes;
+  return kNoClothing;
 }
 
 }  // namespace
