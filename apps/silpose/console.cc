@@ -32,7 +32,7 @@ double seconds_between(std::chrono::steady_clock::time_point from, std::chrono::
 
 }  // namespace
 
-Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) != 0) {}
+Console::Console() : terminal_(isatty(STDERR_FILENO) != 0) {}
 Console::~Console() { clear_line(); }
 
 void Console::watch_interrupts() {

@@ -13,10 +13,12 @@ namespace silpose::app {
 
 class Console : public ProgressSink {
  public:
-  explicit Console(bool quiet);
+  Console();
   ~Console() override;
   Console(const Console&) = delete;
   Console& operator=(const Console&) = delete;
+
+  void set_quiet(bool quiet) { quiet_ = quiet; }
 
   // From here on Ctrl-C and SIGTERM ask the work to stop cleanly; a second one ends the program at once.
   static void watch_interrupts();
@@ -32,7 +34,7 @@ class Console : public ProgressSink {
  private:
   void clear_line();
   using Clock = std::chrono::steady_clock;
-  bool quiet_, terminal_;
+  bool quiet_ = false, terminal_;
   bool line_open_ = false;
   std::string what_;
   int64_t first_done_ = 0;

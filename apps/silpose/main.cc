@@ -7,6 +7,7 @@
 #include <exception>
 
 #include "apps/silpose/command.h"
+#include "apps/silpose/option_file.h"
 #include "silpose/base/parallel.h"
 
 namespace silpose::app {
@@ -28,14 +29,13 @@ int fail(Console& console, bool json, const std::string& message, int status) {
 }
 
 int run_command(const Command& command, const CommonOptions& common) {
+  Console console;
   try {
     if (command.option_file != nullptr && !command.option_file->empty()) {
       const Result<void> applied = apply_option_file(*command.option_file, *command.app);
-      if (!applied) {
-        Console console(common.quiet);
-        return fail(console, common.json, applied.error().message, kFailure);
-      }
+      if (!applied) return fail(console, common.json, applied.error().message, kFailure);
     }
+    console.set_quiet(common.quiet);
     const ThreadLimit limit(common.threads);
     Console::watch_interrupts();
     const Result<Outcome> outcome = command.run(console);
@@ -82,16 +82,16 @@ int run_program(int argc, char** argv) {
   } catch (const CLI::CallForVersion& version) {
     return program.exit(version);
   } catch (const CLI::ParseError& wrong) {
-    Console console(false);
+    Console console;
     if (argc > 1 && argv[1][0] != '-' && program.get_subcommands().empty()) {
       return fail(console, json, fmt::format("{}: no such command; see silpose --help", argv[1]), kWrongUsage);
     }
     return fail(console, json, wrong.what(), kWrongUsage);
   }
-  Console console(common.quiet);
   for (const Command& command : commands) {
-    if (command.app->parsed()) return run_command(command, common, console);
+    if (command.app->parsed()) return run_command(command, common);
   }
+  Console console;
   return fail(console, json, "no command given; see silpose --help", kWrongUsage);
 }
 

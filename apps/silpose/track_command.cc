@@ -221,11 +221,13 @@ Command add_track(CLI::App& program, const CommonOptions& common) {
   const auto options = std::make_shared<TrackOptions>();
   CLI::App* const app = program.add_subcommand("track", "Track a person: VIDEO... --out DIR");
   add_track_options(*app, *options);
-  return {app, [app, options, &common](Console& console) -> Result<Outcome> {
+  return {app,
+          [app, options, &common](Console& console) -> Result<Outcome> {
             if (options->out.empty()) throw UsageError("--out is missing");
             if (options->input.videos.empty()) throw UsageError("VIDEO is missing");
             return TrackRun(*app, *options, common, console).run();
-          }};
+          },
+          &options->config};
 }
 
 }  // namespace silpose::app
