@@ -163,6 +163,7 @@ Result<std::optional<Instant>> ObservationSource::next() {
 
 std::vector<PictureSize> ObservationSource::sizes() const {
   std::vector<PictureSize> sizes;
+  sizes.reserve(static_cast<size_t>(video_->num_cameras()));
   for (int c = 0; c < video_->num_cameras(); ++c) sizes.push_back({video_->width(c), video_->height(c)});
   return sizes;
 }

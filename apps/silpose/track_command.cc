@@ -78,6 +78,7 @@ class TrackRun {
     const Result<Video> video = open_video(options_.input.videos, options_.input.video_options());
     if (!video) return video.failure();
     std::vector<PictureSize> sizes;
+    sizes.reserve(static_cast<size_t>(video->num_cameras()));
     for (int c = 0; c < video->num_cameras(); ++c) sizes.push_back({video->width(c), video->height(c)});
     Result<CameraChoice> choice = choose_cameras(options_.camera, sizes);
     if (!choice) return choice.failure();
@@ -90,6 +91,7 @@ class TrackRun {
     const Stopwatch wall;
     TrackWriter writer(folder, body_, cameras, source.video().fps());
     std::vector<std::string> names;
+    names.reserve(cameras.size());
     for (const PinholeCamera& camera : cameras) names.push_back(camera.name);
     const auto board = std::make_shared<sadb::MemoryStore>();
     // The masks go to files as they come; kept in memory too, they would bound how long a clip may be.

@@ -81,7 +81,7 @@ Result<Tracker> make_tracker(const TrackOptions& options, std::shared_ptr<const 
     tracker.initial_pose = std::move(*pose);
   }
   try {
-    return Tracker(std::move(tracker));
+    return Tracker(tracker);
   } catch (const std::invalid_argument& wrong) {
     throw UsageError(wrong.what());
   }
