@@ -28,12 +28,15 @@ Result<Outcome> run_evaluate(const EvaluateCommandOptions& options, Console& con
   if (options.evaluation.end_s <= options.evaluation.start_s) throw UsageError("--start is not before --end");
   const auto body = choose_body(options.model.empty() ? model_of(options.result) : options.model, console);
   if (!body) return body.failure();
-  const Result<Recorded> result = read_recorded(options.result, (*body)->skeleton);
+  const Result<Recorded> result = read_recorded(options.result, **body);
   if (!result) return result.failure();
-  const Result<Recorded> truth = read_recorded(options.truth, (*body)->skeleton);
+  const Result<Recorded> truth = read_recorded(options.truth, **body);
   if (!truth) return truth.failure();
   const Result<Evaluation> evaluation = evaluate(*result, *truth, **body, options.evaluation);
   if (!evaluation) return evaluation.failure();
+  if (evaluation->frames + evaluation->frames_missing == 0) {
+    return error("{}: no frame between --start and --end", options.truth);
+  }
 
   Outcome outcome;
   outcome.is_answer = true;

@@ -15,9 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Everything that track, synth and segment put into a directory.
-constexpr std::array<std::string_view, 12> kFiles = {
+constexpr std::array<std::string_view, 11> kFiles = {
     "poses.csv",   "poses_normalised.csv", "spread.csv", "joints.csv", "camera.toml", "overlay.mp4",
-    "report.html", "config.toml",          "motion.bvh", "run.json",   "video.mp4",   "background.png"};
+    "report.html", "config.toml",          "motion.bvh", "run.json",   "video.mp4"};
 
 bool is_mask_folder(const fs::path& folder) {
   std::error_code failed;

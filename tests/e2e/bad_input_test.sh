@@ -30,6 +30,14 @@ expect_failure 2 'segmenter' "${track[@]}" truth/masks --segmenter magic
 expect_failure 2 'preset' "${masks[@]}" --preset magic
 expect_failure 2 'region' "${masks[@]}" --region 1,2,3
 expect_failure 2 'start' "${masks[@]}" --start 2 --end 1
+for option in start end fps sigma-deg sharpness resample-below regenerate; do
+  expect_failure 2 "$option" "${masks[@]}" --$option nan
+done
+expect_failure 2 'start' "${masks[@]}" --start 1e300
+expect_failure 2 'seed' "${masks[@]}" --seed -1
+expect_failure 2 'seed' "${masks[@]}" --seed 99999999999999999999
+expect_failure 2 'amplitude-deg' synth --out new --motion sway --amplitude-deg nan
+expect_failure 2 'front' synth --out new --view front --view front
 expect_failure 2 'size' synth --out new --size 0x0
 expect_failure 2 'frames' synth --out new --frames 0
 expect_failure 2 'view' synth --out new --view above
@@ -51,10 +59,12 @@ expect_failure 1 'start' "${masks[@]}" --start 100
 # Calibrations.
 grep -v '^matrix' truth/camera.toml >no_matrix.toml
 sed -E 's/^translation = .*/translation = [nan, 0.0, 5.5]/' truth/camera.toml >nan.toml
+sed -E 's/^name = .*/name = "..\/elsewhere"/' truth/camera.toml >name.toml
 echo 'this is [ not TOML' >broken.toml
 expect_failure 1 'absent.toml' "${uncalibrated[@]}" --camera absent.toml
 expect_failure 1 'no_matrix.toml.*matrix' "${uncalibrated[@]}" --camera no_matrix.toml
 expect_failure 1 'nan.toml' "${uncalibrated[@]}" --camera nan.toml
+expect_failure 1 'name.toml.*elsewhere' "${uncalibrated[@]}" --camera name.toml
 expect_failure 1 'broken.toml' "${uncalibrated[@]}" --camera broken.toml
 expect_failure 1 'other/camera.toml.*200x120' "${uncalibrated[@]}" --camera other/camera.toml
 expect_failure 1 'nobody' "${masks[@]}" --camera-name nobody
@@ -72,7 +82,10 @@ expect_failure 1 'lead-in' "${track[@]}" colour/video.mp4 --background lead-in:6
 sed '1s/abdomen/tummy/' truth/poses.csv >columns.csv
 sed -E '2s/[^,]*$/nan/' truth/poses.csv >nan.csv
 : >empty.csv
+awk -F, -v OFS=, 'NR == 2 { $3 = "1e300" } 1' truth/poses.csv >huge.csv
 expect_failure 1 'columns.csv' "${masks[@]}" --init columns.csv
+expect_failure 1 'huge.csv.*1e300' "${masks[@]}" --init huge.csv
+expect_failure 1 'huge.csv.*1e300' render --pose huge.csv --out picture.png
 expect_failure 1 'nan.csv' "${masks[@]}" --init nan.csv
 expect_failure 1 'empty.csv' "${masks[@]}" --init empty.csv
 expect_failure 1 'absent.csv' render --pose absent.csv --out picture.png
@@ -81,10 +94,19 @@ expect_failure 1 'folder' evaluate --result folder --truth truth
 mkdir wrong && cp columns.csv wrong/poses.csv
 expect_failure 1 'wrong/poses.csv' evaluate --result wrong --truth truth
 expect_failure 1 'absent' evaluate --result result --truth absent
+expect_failure 2 'start' evaluate --result result --truth truth --start 1 --end 1
+expect_failure 2 'end' evaluate --result result --truth truth --end nan
+expect_failure 1 'truth.*--start' evaluate --result result --truth truth --start 100
+mkdir joints && sed 's/,right_foot,/,right_wheel,/' truth/joints.csv >joints/joints.csv
+expect_failure 1 'joints/joints.csv.*right_wheel' evaluate --result joints --truth truth
+mkdir odd && cp truth/poses.csv odd && echo '{"model": 5}' >odd/run.json
+"$silpose" evaluate --result odd --truth truth --quiet >log.txt || fail "a run.json without a model stops evaluate"
 
 # Motions and bodies.
 printf 'HIERARCHY\nROOT Hips\n{\n  OFFSET 0 0\n' >broken.bvh
 expect_failure 1 'broken.bvh' synth --out new --motion broken.bvh
+printf 'HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 1e300\n0\n' >slow.bvh
+expect_failure 1 'slow.bvh.*1e300' synth --out new --motion slow.bvh
 expect_failure 1 'absent.bvh' synth --out new --motion absent.bvh
 expect_failure '1|2' 'dancing' synth --out new --motion dancing
 expect_failure '1|2' 'dof:37' synth --out new --motion dof:37

@@ -25,6 +25,7 @@ constexpr double kPullToZero = 1e-4, kPullToLast = 1e-3;  // against limb direct
 constexpr int kIterations = 60;
 constexpr double kRestJump = to_radians(5);
 constexpr double kStuck = to_radians(5);
+constexpr double kMostFrames = 1e6;  // of a retargeted clip
 
 // A direction to match: from a point of one of our joints to a point of another, both fixed to their joints.
 struct Segment {
@@ -366,6 +367,8 @@ Result<Retargeted> retarget(const Clip& clip, const BodyModel& body, const Retar
   out.first_frame_skipped =
       opens_at_rest(clip) && mean_turn(retargeter.segments(), target_at(0), target_at(1)) > kRestJump;
 
+  const double num_samples = static_cast<double>(clip.num_frames()) / clip.fps * options.fps;
+  if (num_samples > kMostFrames) return error("{}: is {:.0f} frames at {} a second", clip.name, num_samples, options.fps);
   std::vector<double> pose, lowest;
   double sum = 0, count = 0;
   for (const double time : sample_times(clip, out.first_frame_skipped ? 1 : 0, options.fps)) {

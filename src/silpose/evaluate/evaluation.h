@@ -29,8 +29,9 @@ struct Recorded {
 };
 
 // Reads poses.csv, joints.csv and camera.toml where they are there, and lists masks/000000.png ... (or, with several
-// cameras, masks_NAME/ of the first). Errors: no such directory, none of these in it, a broken file.
-Result<Recorded> read_recorded(const std::filesystem::path& directory, const Skeleton& skeleton);
+// cameras, masks_NAME/ of the first). Errors: no such directory, none of these in it, a broken file, a joint that is
+// neither a joint nor an end point of `body`.
+Result<Recorded> read_recorded(const std::filesystem::path& directory, const BodyModel& body);
 
 struct EvaluateOptions {
   double start_s = -std::numeric_limits<double>::infinity();  // frames with start <= time < end count; truth's time

@@ -137,8 +137,8 @@ TEST_F(EvaluateFiles, ReadsDirectoriesAndComparesMasks) {
   poses.has_scores = true;
   ASSERT_TRUE(write_poses(directory_ / "result" / "poses.csv", body().skeleton, poses).ok());
 
-  Recorded result = read_recorded(directory_ / "result", body().skeleton).value();
-  const Recorded truth = read_recorded(directory_ / "truth", body().skeleton).value();
+  Recorded result = read_recorded(directory_ / "result", body()).value();
+  const Recorded truth = read_recorded(directory_ / "truth", body()).value();
   EXPECT_EQ(truth.mask_files.size(), 2U);
   const Evaluation evaluation = evaluate(result, truth, body()).value();
   EXPECT_EQ(evaluation.frames, 2);
@@ -162,8 +162,8 @@ TEST_F(EvaluateFiles, ATruthOfMasksAloneStillCounts) {
   ASSERT_TRUE(write_mask(directory_ / "truth" / "masks" / "000004.png", mask_from_text("##\n..")).ok());
   ASSERT_TRUE(write_mask(directory_ / "result" / "masks" / "000003.png", mask_from_text("#.\n#.")).ok());
   std::ofstream(directory_ / "result" / "masks" / "note.txt") << "not a mask";
-  const Evaluation evaluation = evaluate(read_recorded(directory_ / "result", body().skeleton).value(),
-                                         read_recorded(directory_ / "truth", body().skeleton).value(), body())
+  const Evaluation evaluation = evaluate(read_recorded(directory_ / "result", body()).value(),
+                                         read_recorded(directory_ / "truth", body()).value(), body())
                                     .value();
   EXPECT_EQ(evaluation.frames, 1);
   EXPECT_EQ(evaluation.frames_missing, 1);
@@ -171,17 +171,21 @@ TEST_F(EvaluateFiles, ATruthOfMasksAloneStillCounts) {
 }
 
 TEST_F(EvaluateFiles, NamesWhatIsWrong) {
-  const auto message = [&](const fs::path& path) { return read_recorded(path, body().skeleton).error().message; };
+  const auto message = [&](const fs::path& path) { return read_recorded(path, body()).error().message; };
   EXPECT_THAT(message("no/such/dir"), HasSubstr("no/such/dir: no such directory"));
   EXPECT_THAT(message(directory_), HasSubstr("holds neither"));
   std::ofstream(directory_ / "truth" / "poses.csv") << "frame,time_s\n";
   EXPECT_THAT(message(directory_ / "truth"), AllOf(HasSubstr("poses.csv"), HasSubstr("'root_tx_m' is missing")));
 
+  fs::remove(directory_ / "truth" / "poses.csv");
+  std::ofstream(directory_ / "truth" / "joints.csv") << "frame,time_s,joint,x_m,y_m,z_m\n7,0,knee,1,2,3\n";
+  EXPECT_THAT(message(directory_ / "truth"), HasSubstr("joints.csv: frame 7: unknown joint 'knee'"));
+  fs::remove(directory_ / "truth" / "joints.csv");
+
   ASSERT_TRUE(write_mask(directory_ / "truth" / "masks" / "000003.png", mask_from_text("##\n..")).ok());
   ASSERT_TRUE(write_mask(directory_ / "result" / "masks" / "000003.png", mask_from_text("##")).ok());
-  fs::remove(directory_ / "truth" / "poses.csv");
-  Recorded result = read_recorded(directory_ / "result", body().skeleton).value();
-  const Recorded truth = read_recorded(directory_ / "truth", body().skeleton).value();
+  Recorded result = read_recorded(directory_ / "result", body()).value();
+  const Recorded truth = read_recorded(directory_ / "truth", body()).value();
   EXPECT_THAT(evaluate(result, truth, body()).error().message, AllOf(HasSubstr("000003.png"), HasSubstr("2 x 1")));
   result.poses = PoseTable{.rows = {pose(3, 0)}};
   result.cameras = {default_camera(64, 48)};

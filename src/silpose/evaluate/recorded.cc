@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <charconv>
 #include <system_error>
 
@@ -30,17 +31,23 @@ std::map<int64_t, fs::path> list_masks(const fs::path& directory) {
 
 }  // namespace
 
-Result<Recorded> read_recorded(const fs::path& directory, const Skeleton& skeleton) {
+Result<Recorded> read_recorded(const fs::path& directory, const BodyModel& body) {
   if (!fs::is_directory(directory)) return error("{}: no such directory", directory.string());
   Recorded recorded;
   if (const fs::path path = directory / "poses.csv"; fs::exists(path)) {
-    auto poses = read_poses(path, skeleton);
+    auto poses = read_poses(path, body.skeleton);
     if (!poses) return poses.failure();
     recorded.poses = std::move(*poses);
   }
   if (const fs::path path = directory / "joints.csv"; fs::exists(path)) {
     auto joints = read_joints(path);
     if (!joints) return joints.failure();
+    const std::vector<std::string> known = landmark_names(body);
+    for (const JointTable::Row& row : joints->rows) {
+      if (std::find(known.begin(), known.end(), row.joint) == known.end()) {
+        return error("{}: frame {}: unknown joint '{}'", path.string(), row.frame, row.joint);
+      }
+    }
     recorded.joints = std::move(*joints);
   }
   if (const fs::path path = directory / "camera.toml"; fs::exists(path)) {

@@ -14,6 +14,8 @@ namespace silpose {
 namespace {
 
 constexpr int kMaxChannels = 6;         // of one joint
+constexpr double kLargest = 1e9;                                // of any number in the file
+constexpr double kShortestFrame = 1e-5, kLongestFrame = 1e3;    // seconds
 constexpr int64_t kMaxJoints = 10'000;  // far more than any capture has; keeps a broken file from filling the memory
 
 enum class Channel { kXPosition, kYPosition, kZPosition, kXRotation, kYRotation, kZRotation };
@@ -89,7 +91,8 @@ std::optional<double> to_number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
   double value = 0;
   const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (code != std::errc() || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  const bool is_whole = code == std::errc() && end == word.data() + word.size();
+  if (!is_whole || !std::isfinite(value) || std::abs(value) > kLargest) return std::nullopt;
   return value;
 }
 
@@ -172,7 +175,7 @@ class Reader {
     for (int axis = 0; axis < 3; ++axis) {
       const auto word = lexer_.next();
       const auto value = to_number(word);
-      if (!value) return wrong("OFFSET of '{}': {} is not a finite number", joint.name, shown(word));
+      if (!value) return wrong("OFFSET of '{}': {} is not a number up to 1e9", joint.name, shown(word));
       joint.offset[axis] = *value;
     }
     const int index = static_cast<int>(clip_.joints.size());
@@ -217,6 +220,9 @@ class Reader {
     if (!frame_time_s || *frame_time_s <= 0) {
       return wrong("Frame Time: {} is not a positive number of seconds", shown(time_word));
     }
+    if (*frame_time_s < kShortestFrame || *frame_time_s > kLongestFrame) {
+      return wrong("Frame Time: {} is not within {} to {} seconds", shown(time_word), kShortestFrame, kLongestFrame);
+    }
     if (num_channels_ == 0) return wrong("no joint has channels");
     clip_.fps = fps_from_frame_time(time_word, *frame_time_s);
     return read_frames(static_cast<size_t>(*count));
@@ -234,7 +240,7 @@ class Reader {
         const auto word = lexer_.next();
         if (word.empty()) return wrong("ends in frame {} of {}", frame + 1, num_frames);
         const auto value = to_number(word);
-        if (!value) return wrong("frame {}: {} is not a finite number", frame + 1, shown(word));
+        if (!value) return wrong("frame {}: {} is not a number up to 1e9", frame + 1, shown(word));
         values[k] = *value;
         if (lexer_.at_line_end() != (k + 1 == num_channels_)) {
           return wrong("frame {}: {} than {} values in the line", frame + 1, k + 1 < num_channels_ ? "fewer" : "more",

@@ -34,6 +34,14 @@ void put_frame_and_time(std::string& text, int64_t frame, double time_s) {
   put_value(text, time_s, 6);
 }
 
+// A value of a DOF. Errors: not a finite number; beyond what any pose or its spread can be.
+Result<double> pose_value(const CsvReader& csv, int column) {
+  constexpr double kLargest = 1e6;  // metres, degrees
+  const Result<double> value = csv.number(column);
+  if (value && std::abs(*value) > kLargest) return csv.wrong("{} is not within {} metres or degrees of zero", csv.text(column).substr(0, 40), kLargest);
+  return value;
+}
+
 const std::array<std::string, 2> kScoreColumns = {"visual_accuracy", "effective_sample_size"};
 
 }  // namespace
@@ -97,7 +105,7 @@ Result<PoseTable> read_poses(const std::filesystem::path& path, const Skeleton& 
     row.time_s = *time_s;
     row.values.resize(num_dofs);
     for (size_t d = 0; d < num_dofs; ++d) {
-      const auto value = csv.number(at[d + 2]);
+      const auto value = pose_value(csv, at[d + 2]);
       if (!value) return value.failure();
       const bool in_degrees = units == PoseUnits::kNatural && !skeleton.dofs()[d].is_translation;
       row.values[d] = in_degrees ? to_radians(*value) : *value;

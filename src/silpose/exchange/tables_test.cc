@@ -95,6 +95,7 @@ TEST_F(Tables, NamesFileAndLineOfBadPoses) {
       {"frame,time_s,root_tx_m,tip_rz_deg,tail_rx_deg\n", "line 1: unknown column 'tail_rx_deg'"},
       {"frame,time_s,root_tx_m,tip_rz_deg,frame\n", "line 1: a second column 'frame'"},
       {header + "0,0,1,2\n1,0.1,nan,2\n", "line 3: root_tx_m: 'nan' is not a finite number"},
+      {header + "0,0,1e300,2\n", "line 2: 1e300 is not within 1000000 metres or degrees of zero"},
       {header + "0,0,1,\n", "line 2: tip_rz_deg: '' is not a finite number"},
       {header + "0,0,1,2x\n", "line 2: tip_rz_deg: '2x' is not a finite number"},
       {header + "0.5,0,1,2\n", "line 2: frame: '0.5' is not a whole number"},

@@ -13,6 +13,7 @@
 namespace silpose {
 namespace {
 
+constexpr int kLargestPicture = 16384;   // pixels a side
 constexpr double kPixelCentre = 0.5;     // the library's pixels less OpenCV's
 constexpr double kFarCentre = 100;       // a camera further from the origin than this is probably in millimetres
 constexpr double kClearlyUpright = 0.7;  // cosine between the cameras' mean up direction and the axis taken for up
@@ -81,6 +82,9 @@ Result<FileCamera> read_camera(const std::string& file, std::string_view key, co
     if (!name->is_string() || text->empty()) return error("{}: camera '{}': name is not a text", file, key);
     camera.name = *text;
   }
+  if (camera.name.find('/') != std::string::npos) {  // files are named after cameras
+    return error("{}: camera '{}': a name has no /", file, camera.name);
+  }
   const auto where = [&](std::string_view field) {
     return fmt::format("{}: camera '{}': {}", file, camera.name, field);
   };
@@ -92,8 +96,8 @@ Result<FileCamera> read_camera(const std::string& file, std::string_view key, co
   auto size = numbers(table.get("size"), 2, 2, where("size"));
   if (!size) return size.failure();
   for (const double pixels : *size) {
-    if (!(pixels >= 1 && pixels <= 100000 && pixels == std::floor(pixels))) {
-      return error("{} is not [width, height] in whole, positive pixels", where("size"));
+    if (!(pixels >= 1 && pixels <= kLargestPicture && pixels == std::floor(pixels))) {
+      return error("{} is not [width, height] in whole pixels, 1 to {}", where("size"), kLargestPicture);
     }
   }
   camera.width = static_cast<int>((*size)[0]);

@@ -207,6 +207,8 @@ TEST_F(CalibrationFile, NamesFileCameraAndKeyOfBadInput) {
       {"translation", "", "translation is missing"},
       {"translation", "[1, 2, 3, 4]", "translation has 4 entries, not 3"},
       {"translation", "[1, true, 3]", "translation holds something that is not a finite number"},
+      {"name", "\"left one/../x\"", "a name has no /"},
+      {"size", "[20000, 480]", "whole pixels, 1 to 16384"},
       {"fisheye", "true", "fisheye cameras are not supported"},
       {"fisheye", "1", "fisheye is not true or false"}};
   for (const auto& [key, line, message] : cases) {
