@@ -22,13 +22,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Seconds by stage; `background` is what was spent before the first frame.
+// Seconds by stage; `background` is what was spent before the first frame, `start` on finding a starting pose.
 struct StageSeconds {
-  double background = 0, decode = 0, segment = 0, propagate = 0, likelihood = 0, resample = 0, write = 0;
+  double background = 0, decode = 0, segment = 0, start = 0, propagate = 0, likelihood = 0, resample = 0, write = 0;
 
   [[nodiscard]] std::vector<std::pair<std::string, double>> list() const {
-    return {{"background", background}, {"decode", decode},     {"segment", segment}, {"propagate", propagate},
-            {"likelihood", likelihood}, {"resample", resample}, {"write", write}};
+    return {{"background", background}, {"decode", decode},         {"segment", segment},   {"start", start},
+            {"propagate", propagate},   {"likelihood", likelihood}, {"resample", resample}, {"write", write}};
   }
 };
 
@@ -118,6 +118,7 @@ class TrackRun {
       seconds_.write += writing.seconds();
       seconds_.decode += instant.decode_s;
       seconds_.segment += instant.segment_s;
+      seconds_.start += report.seconds.start;
       seconds_.propagate += report.seconds.propagate;
       seconds_.likelihood += report.seconds.likelihood;
       seconds_.resample += report.seconds.resample;

@@ -158,8 +158,10 @@ TEST_P(BlackboardContract, ServesManyThreads) {
   constexpr int kWriters = 4, kEntries = 500;
   std::atomic<bool> writing = true;
   std::atomic<int> disorder = 0;
+  constexpr int kReaders = 2;
   std::vector<std::thread> readers;
-  for (int r = 0; r < 2; ++r) {
+  readers.reserve(kReaders);
+  for (int r = 0; r < kReaders; ++r) {
     readers.emplace_back([&] {
       while (writing) {
         const auto entries = board_->range("shared", kFirst, kLast);
@@ -176,6 +178,7 @@ TEST_P(BlackboardContract, ServesManyThreads) {
     });
   }
   std::vector<std::thread> writers;
+  writers.reserve(kWriters);
   for (int w = 0; w < kWriters; ++w) {
     writers.emplace_back([&, w] {
       for (int i = 0; i < kEntries; ++i) {

@@ -1,4 +1,5 @@
 // check(): preconditions. A false one is the caller's bug and throws std::invalid_argument with the values.
+// Threads: a function without state.
 #pragma once
 
 #include <fmt/format.h>

@@ -1,4 +1,5 @@
 // Stopwatch: how long a stage took. Monotonic; time stamps of data are int64 nanoseconds and come with the data.
+// Threads: a value.
 #pragma once
 
 #include <chrono>

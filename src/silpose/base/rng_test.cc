@@ -152,7 +152,7 @@ TEST(Rng, IndexIsEven) {
   for (int i = 0; i < kCount; ++i)
     ++counts.at(rng.index(7));
   for (const int count : counts)
-    EXPECT_NEAR(count, kCount / 7, 4 * std::sqrt(kCount / 7.0));
+    EXPECT_NEAR(count, kCount / 7.0, 4 * std::sqrt(kCount / 7.0));
   EXPECT_EQ(rng.index(1), 0u);
   EXPECT_THROW((void)rng.index(0), std::invalid_argument);
 }

@@ -9,7 +9,7 @@ TEST(TextFile, ReadsBackWhatWasWrittenAndLeavesNothingElse) {
   const auto directory = std::filesystem::path(testing::TempDir()) / "text_file_test";
   std::filesystem::remove_all(directory);
   std::filesystem::create_directories(directory);
-  const std::string text = std::string(200000, 'x') + "\r\n\0end";
+  const std::string text = std::string(200000, 'x') + "\r\n\0end"s;
   ASSERT_TRUE(write_text_file(directory / "a.txt", "earlier").ok());
   ASSERT_TRUE(write_text_file(directory / "a.txt", text).ok());
   EXPECT_EQ(read_text_file(directory / "a.txt").value(), text);

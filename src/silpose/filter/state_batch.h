@@ -1,4 +1,5 @@
 // StateBatch: the states of N particles, one row each. Filters know no bodies: a row is D numbers.
+// Threads: a value.
 #pragma once
 
 #include <Eigen/Core>

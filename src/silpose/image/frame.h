@@ -1,4 +1,5 @@
 // Frame: the images of one instant, one per camera.
+// Threads: a value.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/render/raster_grid.h"
-#include "silpose/render/window.h"
+#include "silpose/shape/window.h"
 
 namespace silpose {
 

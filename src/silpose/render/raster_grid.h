@@ -9,7 +9,7 @@
 #include <limits>
 #include <span>
 
-#include "silpose/render/window.h"
+#include "silpose/shape/window.h"
 
 namespace silpose {
 

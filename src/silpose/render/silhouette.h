@@ -18,7 +18,7 @@
 #include "silpose/geometry/camera.h"
 #include "silpose/geometry/mesh.h"
 #include "silpose/image/mask.h"
-#include "silpose/render/window.h"
+#include "silpose/shape/window.h"
 
 namespace silpose {
 

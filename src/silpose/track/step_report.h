@@ -11,9 +11,9 @@
 
 namespace silpose {
 
-// Seconds that the parts of a step took, summed over layers.
+// Seconds that the parts of a step took, summed over layers; `start` is the search for a starting pose.
 struct StepSeconds {
-  double segment = 0, propagate = 0, likelihood = 0, resample = 0;
+  double start = 0, segment = 0, propagate = 0, likelihood = 0, resample = 0;
 };
 
 // What one step did.

@@ -134,7 +134,7 @@ StepReport Tracker::step(std::span<const Observation> observations, int64_t fram
     t.filter->start(t.starting_pose(observations));
     t.started = true;
     report.state = StepReport::State::kInitialised;
-    report.seconds.propagate += stopwatch.seconds();
+    report.seconds.start += stopwatch.seconds();
     report.effective_sample_size = t.filter->step(observations, 0, report.seconds).effective_sample_size;
   } else if (seen) {
     report.state = StepReport::State::kTracked;
