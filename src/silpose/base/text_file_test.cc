@@ -5,6 +5,8 @@
 namespace silpose {
 namespace {
 
+using std::string_literals::operator""s;
+
 TEST(TextFile, ReadsBackWhatWasWrittenAndLeavesNothingElse) {
   const auto directory = std::filesystem::path(testing::TempDir()) / "text_file_test";
   std::filesystem::remove_all(directory);
