@@ -166,6 +166,7 @@ Skeleton small_skeleton() {
                                {"arm", 1, {0.2, 0.1, 0}, {10, 11, 12}},
                                {"fixed", 1, {0, 0.2, 0}, {}}};
   std::vector<Dof> dofs;
+  dofs.reserve(13);
   for (int axis = 0; axis < 3; ++axis) {
     dofs.push_back({.name = std::string("root_t") + "xyz"[axis], .joint_idx = 0, .is_translation = true,
                     .is_periodic = false, .axis = Vector3d::Unit(axis), .lower = -5, .upper = 5});

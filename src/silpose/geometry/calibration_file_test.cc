@@ -1,5 +1,6 @@
 #include "silpose/geometry/calibration_file.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,9 +37,9 @@ class CalibrationFile : public testing::Test {
              {"translation", "[0.0, 1.5, 5.5]"},
              {"fisheye", "false"}}) {
       if (name != key) {
-        text += name + " = " + value + "\n";
+        text += fmt::format("{} = {}\n", name, value);
       } else if (!line.empty()) {
-        text += name + " = " + line + "\n";
+        text += fmt::format("{} = {}\n", name, line);
       }
     }
     return text;
