@@ -18,7 +18,7 @@ BodyModel stick() {
   return body;
 }
 
-RecordedStep step(int64_t frame, std::vector<double> pose, StepReport::State state, double accuracy = 0) {
+RecordedStep step(int64_t frame, const std::vector<double>& pose, StepReport::State state, double accuracy = 0) {
   RecordedStep made{.frame_idx = frame, .time_ns = frame * 100'000'000, .state = state, .pose = pose, .mode = pose};
   if (!pose.empty()) {
     made.spread = {0.1, 0.2};
