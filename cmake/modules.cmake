@@ -27,6 +27,8 @@ target_compile_options(silpose_build_options INTERFACE -Wall -Wextra -Wpedantic 
                        -Wno-missing-field-initializers -Werror)
 if(SILPOSE_SANITIZE)
   target_compile_options(silpose_build_options INTERFACE -fsanitize=${SILPOSE_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  # What the sanitizers add to the code makes GCC see uninitialized members in std::optional and std::regex.
+  target_compile_options(silpose_build_options INTERFACE -Wno-maybe-uninitialized)
   target_link_options(silpose_build_options INTERFACE -fsanitize=${SILPOSE_SANITIZE})
 endif()
 
