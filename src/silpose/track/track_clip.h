@@ -1,0 +1,31 @@
+// track_clip(): tracks a whole recorded clip. Without smoothing it is Tracker::step over its instants.
+// Threads: a function without state; uses all cores and gives the same result on any number.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "silpose/shape/observation.h"
+#include "silpose/track/step_report.h"
+#include "silpose/track/tracker_options.h"
+
+namespace silpose {
+
+// What was seen at one instant: one observation a camera.
+struct ClipInstant {
+  int64_t frame_idx = 0;
+  int64_t time_ns = 0;
+  std::vector<Observation> observations;  // [C]
+};
+
+// Told after each instant; tracking ends early when it returns false.
+using ClipProgress = std::function<bool(size_t instants_done, size_t instants_total)>;
+
+// One report an instant that was tracked, in order. Times must grow.
+// Errors: throws std::invalid_argument as TrackerOptions::check(), or where observations do not fit the cameras.
+std::vector<StepReport> track_clip(const TrackerOptions& options, std::span<const ClipInstant> clip,
+                                   const ClipProgress& progress = {});
+
+}  // namespace silpose
