@@ -122,12 +122,12 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
   CLI::App* const app = program.add_subcommand("synth", "Render a sequence with ground truth");
   app->add_option("--out", options->out, "Directory for the sequence");
   add_model_option(*app, options->model);
-  app->add_option("--motion", options->motion, "FILE.bvh, static, dof:INDEX, circle, sway or random")
+  app->add_option("--motion", options->motion, "FILE.bvh, FILE.txt (humanoid3d), static, dof:INDEX, circle, sway or random")
       ->capture_default_str();
   app->add_option("--amplitude-deg", options->amplitude_deg, "How far sway, circle and random go")
       ->check(within(0, 180));
   app->add_option("--period", options->period_s, "Seconds a swing takes")->check(within(0.01, 1e6));
-  app->add_option("--frames", options->frames, "Of the motion; default 80, or the whole of a BVH file")
+  app->add_option("--frames", options->frames, "Of the motion; default 80, or the whole of a motion file")
       ->check(CLI::Range(1, 1'000'000));
   app->add_option("--fps", options->fps, "Frames a second")->capture_default_str()->check(within(0.1, 10000));
   app->add_option("--view", options->views, "front, side, or degrees round the subject; repeat it for several cameras")

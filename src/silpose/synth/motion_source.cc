@@ -9,7 +9,7 @@
 #include "silpose/base/check.h"
 #include "silpose/base/rng.h"
 #include "silpose/body/retarget.h"
-#include "silpose/exchange/bvh.h"
+#include "silpose/exchange/clip_file.h"
 
 namespace silpose {
 namespace {
@@ -264,8 +264,8 @@ Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& bo
   check(options.fps > 0, "make_motion: fps {} is not positive", options.fps);
   check(options.num_frames >= 0, "make_motion: {} frames", options.num_frames);
   check(options.period_s.value_or(1) > 0, "make_motion: period {} s is not positive", options.period_s.value_or(1));
-  if (name.ends_with(".bvh") || name.ends_with(".BVH")) {
-    const Result<Clip> clip = read_bvh(name);
+  if (is_clip_file(name)) {
+    const Result<Clip> clip = read_clip(name);
     if (!clip) return clip.failure();
     return motion_from_clip(*clip, body, options);
   }
@@ -289,7 +289,7 @@ Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& bo
     }
     motion.poses = sweep_dof(body, index, options);
   } else {
-    return error("unknown motion '{}': a .bvh file, static, dof:INDEX, circle, sway or random", name);
+    return error("unknown motion '{}': a .bvh or humanoid3d .txt file, static, dof:INDEX, circle, sway or random", name);
   }
   return motion;
 }

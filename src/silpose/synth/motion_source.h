@@ -1,4 +1,5 @@
-// Motions whose truth is known: poses by name ("static", "dof:6", "sway", "circle", "random", "walk.bvh").
+// Motions whose truth is known: poses by name ("static", "dof:6", "sway", "circle", "random", "walk.bvh",
+// "humanoid3d_walk.txt").
 // None of them comes from the motion models of the tracker, so that truth is not drawn from the model under test.
 // Threads: functions without state.
 #pragma once
@@ -15,7 +16,7 @@
 namespace silpose {
 
 struct SyntheticMotionOptions {
-  int num_frames = 0;  // 0: the whole clip of a BVH file; 80 of any other motion
+  int num_frames = 0;  // 0: the whole clip of a motion file; 80 of any other motion
   double fps = 30;
   std::optional<double> amplitude_deg;  // of sway (8), of the legs on the circle (25), of random (25)
   std::optional<double> period_s;       // of dof (the whole sequence), sway (4), one lap of the circle (6), random (2)
@@ -25,12 +26,12 @@ struct SyntheticMotionOptions {
 struct SyntheticMotion {
   std::vector<std::vector<double>> poses;  // [T][D] metres, radians, inside the limits
   double fps = 30;
-  // Of a BVH: angle between its limbs and ours, degrees; see body/retarget.h.
+  // Of a motion file: angle between its limbs and ours, degrees; see body/retarget.h.
   std::optional<double> mean_residual_deg, max_residual_deg;
 };
 
-// The motion called `name`; one that ends in ".bvh" is a file.
-// Errors: unknown motion; a DOF that is not a number or out of range; an unreadable BVH, or one that is too short.
+// The motion called `name`; one that ends as a motion file does (exchange/clip_file.h) is read.
+// Errors: unknown motion; a DOF that is not a number or out of range; an unreadable motion file, or one that is too short.
 Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& body,
                                     const SyntheticMotionOptions& options = {});
 
