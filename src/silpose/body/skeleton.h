@@ -62,6 +62,10 @@ class Skeleton {
   [[nodiscard]] Eigen::Matrix3Xd point_jacobian(std::span<const double> pose, std::span<const Rigid3> world_from_joint,
                                                 int joint_idx, const Eigen::Vector3d& x_in_world) const;
 
+  // The axis of every DOF in world coordinates [3, D]: what a translation moves along, what a rotation turns about (through
+  // the joint's centre). `world_from_joint` [J] comes from forward_kinematics.
+  [[nodiscard]] Eigen::Matrix3Xd dof_axes(std::span<const double> pose, std::span<const Rigid3> world_from_joint) const;
+
   // Brings a pose inside the limits: clamps, and wraps periodic DOF. Translations are left alone.
   void clamp(std::span<double> pose) const;
 
@@ -78,6 +82,9 @@ class Skeleton {
     double sign = 1;    // of a cardinal axis
     bool is_translation = false;
   };
+  void axes_of_joint(std::span<const double> pose, std::span<const Rigid3> world_from_joint, int joint_idx,
+                     Eigen::Matrix3Xd& axes) const;
+
   std::string name_;
   std::vector<Joint> joints_;
   std::vector<Dof> dofs_;

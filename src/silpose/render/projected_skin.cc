@@ -36,6 +36,7 @@ ProjectedSkin::ProjectedSkin(const BodyModel& body, const PinholeCamera& camera)
       // Lanes past the end repeat the last vertex, so that they change neither bounds nor what is seen.
       const size_t position = std::min(first + lane, num_vertices - 1);
       const uint32_t vertex = order[position];
+      vertex_of_slot_.push_back(vertex);
       if (first + lane < num_vertices) slot_of_vertex[vertex] = static_cast<uint32_t>(position);
       const Eigen::Vector3f& rest = body.rest.vertices[vertex];
       for (uint32_t i = skin.row_start[vertex]; i < skin.row_start[vertex + 1]; ++i) {
@@ -151,6 +152,14 @@ bool ProjectedSkin::leave_out_unseen(Scratch& scratch) const {
   }
   scratch.bounds = bounds;
   return bounds.x0 <= bounds.x1;
+}
+
+void ProjectedSkin::copy_pixels(const Scratch& scratch, std::span<Eigen::Vector2f> pixels) const {
+  check(pixels.size() == num_slots(), "ProjectedSkin: {} slots, room for {}", num_slots(), pixels.size());
+  Eigen::Vector2f* pixel = pixels.data();
+  for (size_t c = 0; c < chunks_.size(); ++c) {
+    for (Eigen::Index lane = 0; lane < 4; ++lane) *pixel++ = {scratch.x[c][lane], scratch.y[c][lane]};
+  }
 }
 
 void ProjectedSkin::round(const Window& window, Scratch& scratch) const {

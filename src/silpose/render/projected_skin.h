@@ -23,6 +23,8 @@ class ProjectedSkin {
 
   [[nodiscard]] std::span<const Face> faces() const { return faces_; }
   [[nodiscard]] size_t num_slots() const { return 4 * chunks_.size(); }
+  // The mesh's vertex at each slot [slots].
+  [[nodiscard]] std::span<const uint32_t> vertex_of_slot() const { return vertex_of_slot_; }
 
   // What one thread needs, and where project() leaves the pixels.
   struct Scratch {
@@ -39,6 +41,9 @@ class ProjectedSkin {
 
   // Rounds the pixels to a window's grid, into scratch.points.
   void round(const Window& window, Scratch& scratch) const;
+
+  // The pixels [slots] that project() left; NaN where unseen.
+  void copy_pixels(const Scratch& scratch, std::span<Eigen::Vector2f> pixels) const;
 
  private:
   // Four vertices and the joints that move any of them: entries [begin, end).
@@ -57,6 +62,7 @@ class ProjectedSkin {
   const BodyModel* body_;
   const PinholeCamera* camera_;
   std::vector<Face> faces_;
+  std::vector<uint32_t> vertex_of_slot_;
   std::vector<Chunk> chunks_;
   std::vector<Entry> entries_;
   std::vector<uint32_t> entry_joint_;

@@ -16,6 +16,7 @@ struct Trust {
 struct Observation {
   Mask mask;  // whole image, the chosen blob
   Box box;    // its bounding box
+  ByteImage confidence = {};  // of each pixel, 255: sure; empty: sure everywhere. Only the fitted filter looks at it.
   Trust trust;
 };
 

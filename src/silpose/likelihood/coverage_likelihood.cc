@@ -1,0 +1,230 @@
+#include "silpose/likelihood/coverage_likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "silpose/base/check.h"
+#include "silpose/body/skin_derivative.h"
+#include "silpose/likelihood/coverage_raster.h"
+#include "silpose/render/outline_spans.h"
+#include "silpose/render/projected_skin.h"
+
+namespace silpose {
+namespace {
+
+// What turns sum_cells D (K * D) into squared pixels along the outline.
+double outline_scale(int cell) {
+  return 2 * std::sqrt(std::numbers::pi) * cell * static_cast<double>(cell) * static_cast<double>(cell);
+}
+
+// d pixel / d x_in_world: two directions in world coordinates.
+struct PixelDirections {
+  Eigen::Vector3f u, v;
+};
+
+class CameraDerivative {
+ public:
+  explicit CameraDerivative(const PinholeCamera& camera)
+      : camera_(&camera),
+        straight_(!camera.has_distortion()),
+        rotation_(camera.cam_from_world.rotation.cast<float>()),
+        translation_(camera.cam_from_world.translation.cast<float>()) {}
+
+  [[nodiscard]] PixelDirections at(const Eigen::Vector3f& x_in_world) const {
+    if (!straight_) {
+      const Eigen::Matrix<double, 2, 3> jacobian = camera_->project_jacobian(x_in_world.cast<double>());
+      return {jacobian.row(0).cast<float>(), jacobian.row(1).cast<float>()};
+    }
+    const Eigen::Vector3f x = rotation_ * x_in_world + translation_;
+    const float inverse_depth = 1 / x.z();
+    const Eigen::Vector3f depth_row = rotation_.row(2).transpose() * inverse_depth;
+    return {(static_cast<float>(camera_->fx) * inverse_depth) * (rotation_.row(0).transpose() - x.x() * depth_row),
+            (static_cast<float>(camera_->fy) * inverse_depth) * (rotation_.row(1).transpose() - x.y() * depth_row)};
+  }
+
+ private:
+  const PinholeCamera* camera_;
+  bool straight_;
+  Eigen::Matrix3f rotation_;
+  Eigen::Vector3f translation_;
+};
+
+}  // namespace
+
+struct CoverageLikelihood::Impl {
+  struct View {
+    View(const BodyModel& body, const PinholeCamera& camera)
+        : skin(body, camera), topology(skin.faces()), derivative(camera) {}
+    ProjectedSkin skin;
+    EdgeTopology topology;
+    CameraDerivative derivative;
+  };
+  Impl(std::shared_ptr<const BodyModel> the_body, std::vector<PinholeCamera> the_cameras, int the_rows_per_cell)
+      : body(std::move(the_body)), cameras(std::move(the_cameras)), rows_per_cell(the_rows_per_cell) {
+    views.reserve(cameras.size());
+    for (const PinholeCamera& camera : cameras) views.emplace_back(*body, camera);
+  }
+  std::shared_ptr<const BodyModel> body;
+  std::vector<PinholeCamera> cameras;
+  std::vector<View> views;
+  int rows_per_cell;
+};
+
+struct CoverageLikelihood::Scratch::Impl {
+  explicit Impl(const CoverageLikelihood::Impl& likelihood) : skin_derivative(*likelihood.body) {
+    for (const auto& view : likelihood.views) spans.emplace_back(view.topology);
+  }
+  ProjectedSkin::Scratch projected;
+  std::vector<Eigen::Vector2f> pixels;  // [slots]
+  std::vector<OutlineSpans> spans;      // [C]
+  SkinDerivative skin_derivative;
+  CoverageDifference difference;
+  std::vector<float> end_derivative;  // [D]
+};
+
+CoverageLikelihood::Scratch::Scratch(const CoverageLikelihood& likelihood)
+    : impl_(std::make_unique<Impl>(*likelihood.impl_)) {}
+CoverageLikelihood::Scratch::Scratch(Scratch&&) noexcept = default;
+CoverageLikelihood::Scratch::~Scratch() = default;
+
+CoverageLikelihood::CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras,
+                                       int rows_per_cell) {
+  check(rows_per_cell >= 1, "CoverageLikelihood: {} rows a cell", rows_per_cell);
+  check(body != nullptr && !body->rest.faces.empty(), "CoverageLikelihood: no body");
+  check(!cameras.empty(), "CoverageLikelihood: no camera");
+  impl_ = std::make_unique<const Impl>(std::move(body), std::move(cameras), rows_per_cell);
+}
+CoverageLikelihood::~CoverageLikelihood() = default;
+
+const BodyModel& CoverageLikelihood::body() const { return *impl_->body; }
+std::span<const PinholeCamera> CoverageLikelihood::cameras() const { return impl_->cameras; }
+
+CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observations, Blur widest) const {
+  check(observations.size() == impl_->cameras.size(), "CoverageLikelihood: {} observations for {} cameras",
+        observations.size(), impl_->cameras.size());
+  CoverageEvidence evidence;
+  for (size_t c = 0; c < observations.size(); ++c) {
+    const Observation& observation = observations[c];
+    const PinholeCamera& camera = impl_->cameras[c];
+    check(observation.mask.width() == camera.width && observation.mask.height() == camera.height,
+          "CoverageLikelihood: mask of {}x{} for camera '{}' of {}x{}", observation.mask.width(),
+          observation.mask.height(), camera.name, camera.width, camera.height);
+    CoverageEvidence::View& view = evidence.views.emplace_back();
+    evidence.noise.push_back(0);
+    if (observation.trust.nothing_found || observation.box.empty()) continue;
+    view.trust = observation.trust.overall;
+    const double extent = std::max(observation.box.height, observation.box.width);
+    view.pixel_unit = std::max(extent / CoverageEvidence::kSubjectHeight, 0.25);
+    view.outline_length = outline_length(observation.mask);
+    evidence.noise.back() = kExactNoise * std::pow(view.pixel_unit, 3);
+    for (size_t b = 0; b <= static_cast<size_t>(widest); ++b) {
+      const int cell = std::max(1, static_cast<int>(std::lround(kBlurSigma[b] * view.pixel_unit)));
+      view.rasters[b] = coverage_raster(observation, cell);
+    }
+  }
+  return evidence;
+}
+
+namespace {
+
+// Draws a projected body's coverage, less the observed one, into `difference`; calls on_end(end, cell x, cell y, by) for
+// every end inside the picture: moving it to the right by 1 px changes its cell's coverage by `by`.
+template <class OnEnd>
+void draw_difference(OutlineSpans& spans, const PinholeCamera& camera, const CoverageEvidence::Raster& raster,
+                     int rows_per_cell, CoverageDifference& difference, OnEnd&& on_end) {
+  const auto width = static_cast<float>(camera.width);
+  const float step = static_cast<float>(raster.cell) / static_cast<float>(rows_per_cell);
+  const float by = step / (static_cast<float>(raster.cell) * static_cast<float>(raster.cell));
+  spans.for_each_span([&](int row, const SpanEnd& left, const SpanEnd& right) {
+    const float begin = std::max(left.x, 0.0f), end = std::min(right.x, width);
+    if (!(begin < end)) return;
+    const int cell_y = row / rows_per_cell;
+    difference.add_span(cell_y, begin, end);
+    if (left.x > 0) on_end(left, difference.column_of(left.x), cell_y, -by);
+    if (right.x < width) on_end(right, difference.column_of(right.x), cell_y, by);
+  });
+}
+
+SampledRows rows_of(const PinholeCamera& camera, int cell, int rows_per_cell) {
+  const float step = static_cast<float>(cell) / static_cast<float>(rows_per_cell);
+  return {.first = step / 2, .step = step,
+          .count = static_cast<int>(std::floor(static_cast<float>(camera.height) / step))};
+}
+
+}  // namespace
+
+std::vector<double> CoverageLikelihood::residuals(const CoverageEvidence& evidence, Blur blur,
+                                                  std::span<const double> pose, Scratch& scratch) const {
+  check(evidence.views.size() == impl_->views.size(), "CoverageLikelihood: evidence of {} cameras for {}",
+        evidence.views.size(), impl_->views.size());
+  Scratch::Impl& s = *scratch.impl_;
+  std::vector<double> residual(impl_->views.size(), 0.0);
+  for (size_t c = 0; c < impl_->views.size(); ++c) {
+    const CoverageEvidence::View& evident = evidence.views[c];
+    if (evident.trust <= 0) continue;
+    const Impl::View& view = impl_->views[c];
+    const CoverageEvidence::Raster& raster = evident.rasters[static_cast<size_t>(blur)];
+    s.difference.start(raster, impl_->rows_per_cell);
+    if (view.skin.project(pose, s.projected)) {
+      s.pixels.resize(view.skin.num_slots());
+      view.skin.copy_pixels(s.projected, s.pixels);
+      s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell));
+      draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference, [](const SpanEnd&, int, int, float) {});
+    }
+    residual[c] = outline_scale(raster.cell) * s.difference.finish();
+  }
+  return residual;
+}
+
+double CoverageLikelihood::energy(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,
+                                  Scratch& scratch) const {
+  const std::vector<double> residual = residuals(evidence, blur, pose, scratch);
+  double sum = 0;
+  for (size_t c = 0; c < residual.size(); ++c) {
+    if (residual[c] > 0) sum += evidence.views[c].trust / evidence.noise[c] * residual[c];
+  }
+  return sum;
+}
+
+NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, Blur blur,
+                                              std::span<const double> pose, Scratch& scratch) const {
+  check(evidence.views.size() == impl_->views.size(), "CoverageLikelihood: evidence of {} cameras for {}",
+        evidence.views.size(), impl_->views.size());
+  Scratch::Impl& s = *scratch.impl_;
+  const Eigen::Index D = impl_->body->skeleton.num_dofs();
+  NormalEquations equations{0, Eigen::VectorXd::Zero(D), Eigen::MatrixXd::Zero(D, D)};
+  s.end_derivative.resize(static_cast<size_t>(D));
+  for (size_t c = 0; c < impl_->views.size(); ++c) {
+    const CoverageEvidence::View& evident = evidence.views[c];
+    if (evident.trust <= 0) continue;
+    const Impl::View& view = impl_->views[c];
+    const CoverageEvidence::Raster& raster = evident.rasters[static_cast<size_t>(blur)];
+    s.difference.start(raster, impl_->rows_per_cell, static_cast<int>(D));
+    if (view.skin.project(pose, s.projected)) {
+      s.pixels.resize(view.skin.num_slots());
+      view.skin.copy_pixels(s.projected, s.pixels);
+      s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell));
+      s.skin_derivative.set_pose(pose);
+      const auto add_vertex = [&](uint32_t slot, float weight, float dx_dy) {
+        const uint32_t vertex = view.skin.vertex_of_slot()[slot];
+        const PixelDirections d = view.derivative.at(s.skin_derivative.position(vertex));
+        s.skin_derivative.add(vertex, weight * (d.u - dx_dy * d.v));
+      };
+      draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference,
+                      [&](const SpanEnd& end, int cell_x, int cell_y, float by) {
+                        add_vertex(end.vertex_a, by * (1 - end.t), end.dx_dy);
+                        add_vertex(end.vertex_b, by * end.t, end.dx_dy);
+                        s.skin_derivative.take(s.end_derivative);
+                        s.difference.add_derivative(cell_x, cell_y, s.end_derivative);
+                      });
+    }
+    const double weight = evident.trust / evidence.noise[c] * outline_scale(raster.cell);
+    equations.energy += weight * s.difference.finish();
+    s.difference.add_normal_equations(weight, equations.gradient, equations.hessian);
+  }
+  return equations;
+}
+
+}  // namespace silpose

@@ -1,0 +1,103 @@
+// CoverageLikelihood: a silhouette likelihood that has a derivative. Model and observation are compared by how much of
+// each cell of a grid they cover, after a blur as wide as a cell: the wider, the further off a pose may be and still be
+// pulled the right way. No correspondences are needed, and what the model lacks pulls as much as what it has too much.
+//
+//   E(pose) = sum over cameras of trust / noise * 2 sqrt(pi) sigma c^2 sum_cells (G_sigma * w (C_model - C_observed))^2
+//
+// with cells of side c = sigma, C the covered part of a cell, w its confidence. A straight outline of length L that is
+// d pixels off has E = L d^2 / noise at every sigma, so `noise` is the variance of the outline times its correlation
+// length along the outline (px^3) and E counts independent errors: -2 log-likelihood.
+// The derivative is exact for the sampled rows: each end of a span moves by dx = J_x - (dx/dy) J_y of the surface point
+// there. Blurring is done once and on both sides: G * G is one kernel, wanted only at the cells that hold an end.
+// Based on: Gauss-Newton on smooth image differences (references.bib: nocedal2006).
+// Threads: constant after construction; one Scratch per thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "silpose/body/body_model.h"
+#include "silpose/geometry/camera.h"
+#include "silpose/image/image.h"
+#include "silpose/shape/observation.h"
+
+namespace silpose {
+
+// How wide the blur is: sigma, in pixels of a subject who is kSubjectHeight pixels tall; it scales with the subject.
+enum class Blur { k2 = 0, k4, k8, k16, k32 };
+inline constexpr std::array<int, 5> kBlurSigma = {2, 4, 8, 16, 32};
+
+// The observations of one instant, as covered cells.
+struct CoverageEvidence {
+  static constexpr double kSubjectHeight = 280;  // pixels
+  struct Raster {
+    int cell = 0;               // pixels a side
+    Image<float> observed;      // [ceil(height / cell), ceil(width / cell)] covered part, 0 to 1
+    Image<float> confidence;    // the same size; empty: 1 everywhere
+    Box occupied;               // cells with anything observed
+  };
+  struct View {
+    double trust = 0;           // 0: this camera has no say
+    double pixel_unit = 1;      // pixels that one pixel of a subject of kSubjectHeight is worth
+    double outline_length = 0;  // pixels, of the observed mask
+    std::array<Raster, kBlurSigma.size()> rasters;  // by Blur
+  };
+  std::vector<View> views;      // [C]
+  std::vector<double> noise;    // [C] outline variance times correlation length, px^3; may be set by the caller
+};
+
+// E and its Gauss-Newton model: E(pose + d) = energy + 2 gradient . d + d' hessian d.
+struct NormalEquations {
+  double energy = 0;
+  Eigen::VectorXd gradient;  // [D]
+  Eigen::MatrixXd hessian;   // [D, D]
+};
+
+class CoverageLikelihood {
+ public:
+  // `rows_per_cell`: how finely the model's coverage is sampled; more make E smoother, and slower.
+  CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras, int rows_per_cell = 2);
+  ~CoverageLikelihood();
+
+  // What exact masks deserve, in units of pixel_unit^3: the default of CoverageEvidence::noise.
+  static constexpr double kExactNoise = 10;
+
+  // Shapes: one observation a camera. A camera whose observation found nothing gets no say. Only blurs up to `widest`
+  // are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit its camera.
+  [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32) const;
+
+  // What evaluations work in; one a thread.
+  class Scratch {
+   public:
+    explicit Scratch(const CoverageLikelihood& likelihood);
+    Scratch(Scratch&&) noexcept;
+    ~Scratch();
+
+   private:
+    friend class CoverageLikelihood;
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+  };
+
+  // E of a pose [D]. A body that is not seen covers nothing.
+  double energy(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose, Scratch& scratch) const;
+
+  NormalEquations linearise(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,
+                            Scratch& scratch) const;
+
+  // E of each view by itself with noise 1 and trust 1 (px^3): what noise is estimated from. [C]
+  std::vector<double> residuals(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,
+                                Scratch& scratch) const;
+
+  [[nodiscard]] const BodyModel& body() const;
+  [[nodiscard]] std::span<const PinholeCamera> cameras() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+}  // namespace silpose

@@ -1,0 +1,170 @@
+#include "silpose/likelihood/coverage_likelihood.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "silpose/body/human.h"
+#include "silpose/body/test_body.h"
+#include "silpose/likelihood/coverage_raster.h"
+#include "silpose/render/silhouette.h"
+
+namespace silpose {
+namespace {
+
+Observation observation_of(Mask mask) {
+  Observation observation;
+  observation.box = mask.bounding_box();
+  observation.mask = std::move(mask);
+  return observation;
+}
+
+std::shared_ptr<const BodyModel> small_body() { return std::make_shared<const BodyModel>(make_test_body()); }
+
+std::shared_ptr<const BodyModel> human() {
+  const auto data = MakeHumanData::load(std::string(SILPOSE_DATA_DIR) + "/makehuman").value();
+  return std::make_shared<const BodyModel>(level_of_detail(build_human(data, {}).value(), 4000));
+}
+
+// A pose with every angle bent a little, standing.
+std::vector<double> bent_pose(const BodyModel& body, double amount) {
+  std::vector<double> pose = standing_pose(body);
+  for (size_t d = 0; d < pose.size(); ++d) {
+    if (!body.skeleton.dofs()[d].is_translation) pose[d] += amount * std::sin(1.7 * static_cast<double>(d) + 0.4);
+  }
+  body.skeleton.clamp(pose);
+  return pose;
+}
+
+TEST(CoverageRaster, CountsCoveredPartsOfCells) {
+  const Observation observation = observation_of(mask_from_text(R"(
+    ##..
+    ##..
+    .#..
+    ....
+  )"));
+  const auto raster = coverage_raster(observation, 2);
+  EXPECT_EQ(raster.observed.width(), 2);
+  EXPECT_FLOAT_EQ(raster.observed.at(0, 0), 1.0f);
+  EXPECT_FLOAT_EQ(raster.observed.at(0, 1), 0.25f);
+  EXPECT_FLOAT_EQ(raster.observed.at(1, 0), 0.0f);
+  EXPECT_EQ(raster.occupied, (Box{0, 0, 1, 2}));
+}
+
+TEST(OutlineLength, OfADiscIsItsCircumference) {
+  Mask mask(200, 200);
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 200; ++x) {
+      if (std::hypot(x - 99.5, y - 99.5) < 70) mask.set(x, y);
+    }
+  }
+  EXPECT_NEAR(outline_length(mask), 2 * kPi * 70, 10);
+}
+
+// An axis-aligned block that is one pixel off to the right: both upright sides are, and E is their length.
+TEST(CoverageDifference, CountsSquaredPixelsAlongTheOutline) {
+  Mask mask(256, 256);
+  for (int y = 64; y < 192; ++y) {
+    for (int x = 64; x < 192; ++x) mask.set(x, y);
+  }
+  for (const int cell : {2, 4, 8}) {
+    const auto raster = coverage_raster(observation_of(mask), cell);
+    CoverageDifference difference;
+    difference.start(raster, 2);
+    for (int row = 128 / cell; row < 384 / cell; ++row) difference.add_span(row / 2, 65, 193);
+    const double scale = 2 * std::sqrt(kPi) * cell * cell * cell;
+    EXPECT_NEAR(scale * difference.finish(), 256, 20) << "cells of " << cell;
+  }
+}
+
+TEST(CoverageLikelihood, IsSmallestAtTheTruth) {
+  const auto body = small_body();
+  const PinholeCamera camera = look_at_camera(320, 240, 350, {0, 1, 3.5}, {0, 1, 0});
+  const CoverageLikelihood likelihood(body, {camera});
+  CoverageLikelihood::Scratch scratch(likelihood);
+  const std::vector<double> truth = bent_pose(*body, 0.3);
+  const auto evidence = likelihood.prepare(std::vector{observation_of(render_silhouette(*body, camera, truth))});
+  for (const Blur blur : {Blur::k2, Blur::k4, Blur::k8, Blur::k16}) {
+    const double at_truth = likelihood.energy(evidence, blur, truth, scratch);
+    for (size_t d = 0; d < truth.size(); ++d) {
+      for (const double step : {-0.1, 0.1}) {
+        std::vector<double> off = truth;
+        off[d] += step;
+        EXPECT_GE(likelihood.energy(evidence, blur, off, scratch), at_truth * 0.98) << d;
+      }
+    }
+  }
+}
+
+struct DerivativeCase {
+  const char* name;
+  bool is_human;
+  double distortion;
+  int num_cameras;
+};
+class CoverageDerivative : public testing::TestWithParam<DerivativeCase> {};
+
+// Against central differences, for every DOF. E has small steps where an end comes or goes on a sampled row: here rows
+// are fine.
+TEST_P(CoverageDerivative, AgreesWithFiniteDifferences) {
+  const auto body = GetParam().is_human ? human() : small_body();
+  std::vector<PinholeCamera> cameras = {look_at_camera(640, 480, 600, {0.5, 1.2, 3.5}, {0, 0.9, 0})};
+  if (GetParam().num_cameras > 1) cameras.push_back(look_at_camera(640, 480, 600, {3.5, 1.2, 0.5}, {0, 0.9, 0}));
+  for (PinholeCamera& camera : cameras) camera.distortion = {GetParam().distortion, 0, 0.5 * GetParam().distortion, 0, 0};
+  const CoverageLikelihood likelihood(body, cameras, 64);
+  CoverageLikelihood::Scratch scratch(likelihood);
+  const std::vector<double> truth = bent_pose(*body, 0.3), pose = bent_pose(*body, 0.22);
+  std::vector<Observation> observations;
+  for (const PinholeCamera& camera : cameras) observations.push_back(observation_of(render_silhouette(*body, camera, truth)));
+  const auto evidence = likelihood.prepare(observations);
+  for (const Blur blur : {Blur::k4, Blur::k8}) {
+    const NormalEquations equations = likelihood.linearise(evidence, blur, pose, scratch);
+    EXPECT_NEAR(equations.energy, likelihood.energy(evidence, blur, pose, scratch), 1e-6 * equations.energy);
+    for (size_t d = 0; d < pose.size(); ++d) {
+      std::vector<double> more = pose, less = pose;
+      const double step = 0.001;  // metres or radians
+      more[d] += step;
+      less[d] -= step;
+      const double slope = (likelihood.energy(evidence, blur, more, scratch) -
+                            likelihood.energy(evidence, blur, less, scratch)) / (4 * step);
+      const auto i = static_cast<Eigen::Index>(d);
+      // What one standard deviation of this DOF alone would change: the natural scale of its slope.
+      const double scale = std::sqrt(equations.hessian(i, i) * equations.energy);
+      EXPECT_NEAR(equations.gradient[i], slope, 0.03 * scale + 1e-9) << body->skeleton.dofs()[d].name;
+    }
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Bodies, CoverageDerivative,
+                         testing::Values(DerivativeCase{"TestBody", false, 0, 1}, DerivativeCase{"Human", true, 0, 1},
+                                         DerivativeCase{"Distorted", true, -0.15, 1},
+                                         DerivativeCase{"TwoCameras", true, 0, 2}),
+                         [](const auto& the_case) { return the_case.param.name; });
+
+TEST(CoverageLikelihood, IgnoresWhereItIsNotConfident) {
+  const auto body = small_body();
+  const PinholeCamera camera = look_at_camera(320, 240, 350, {0, 1, 3.5}, {0, 1, 0});
+  const CoverageLikelihood likelihood(body, {camera});
+  CoverageLikelihood::Scratch scratch(likelihood);
+  const std::vector<double> truth = bent_pose(*body, 0.3);
+  Observation observation = observation_of(render_silhouette(*body, camera, truth));
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 80; ++x) observation.mask.set(x, y);
+  }
+  observation.box = observation.mask.bounding_box();
+  const double fooled = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
+  observation.confidence = ByteImage(320, 240, 1, 255);
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 80; ++x) observation.confidence.at(x, y) = 0;
+  }
+  const double warned = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
+  EXPECT_LT(warned, 0.1 * fooled);
+}
+
+TEST(CoverageLikelihood, RefusesAMaskOfAnotherSize) {
+  const CoverageLikelihood likelihood(small_body(), {default_camera(320, 240)});
+  EXPECT_THROW((void)likelihood.prepare(std::vector{observation_of(Mask(64, 48))}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace silpose
