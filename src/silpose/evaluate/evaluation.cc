@@ -142,6 +142,49 @@ std::vector<int64_t> true_frames(const Recorded& truth, const Side& truth_side, 
   return frames;
 }
 
+// Both sides by frame number, and the frames that both have.
+struct Sides {
+  Sides(const Recorded& result_recorded, const Recorded& truth_recorded, const EvaluateOptions& options)
+      : result(result_recorded), truth(truth_recorded) {
+    check(options.start_s < options.end_s, "evaluate from {} to {} s", options.start_s, options.end_s);
+    for (const int64_t frame : true_frames(truth_recorded, truth, result, options)) {
+      const bool is_there = result.times.contains(frame) || result_recorded.mask_files.contains(frame);
+      if (is_there) frames.push_back(frame);
+      frames_missing += is_there ? 0 : 1;
+    }
+  }
+
+  Side result, truth;
+  std::vector<int64_t> frames;  // ascending
+  int64_t frames_missing = 0;
+};
+
+// [sides.frames]
+Result<std::vector<FrameFigures>> frame_figures(const Recorded& result, const Recorded& truth, const BodyModel& body,
+                                                const Sides& sides) {
+  std::vector<FrameFigures> figures(sides.frames.size());
+  std::vector<Result<void>> outcomes(sides.frames.size());
+  parallel_for(sides.frames.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const int64_t frame = sides.frames[i];
+      const auto pose = sides.result.poses.find(frame), true_pose = sides.truth.poses.find(frame);
+      const bool has_pose = pose != sides.result.poses.end();
+      if (has_pose && true_pose != sides.truth.poses.end()) {
+        add_pose_errors(body.skeleton, pose->second->values, true_pose->second->values, figures[i]);
+      }
+      const auto joints = sides.result.joints.find(frame), true_joints = sides.truth.joints.find(frame);
+      if (joints != sides.result.joints.end() && true_joints != sides.truth.joints.end()) {
+        add_joint_errors(joints->second, true_joints->second, figures[i]);
+      }
+      outcomes[i] = add_mask_figures(result, truth, body, frame, has_pose ? pose->second : nullptr, figures[i]);
+    }
+  });
+  for (const Result<void>& outcome : outcomes) {
+    if (!outcome) return outcome.failure();
+  }
+  return figures;
+}
+
 std::optional<Figure> figure_over_frames(const std::vector<FrameFigures>& frames, size_t index) {
   double sum = 0, sum_of_squares = 0;
   int64_t count = 0;
@@ -165,39 +208,31 @@ std::optional<Figure> Evaluation::find(std::string_view name) const {
   return std::nullopt;
 }
 
+std::vector<std::string> figure_names() { return {kFigureNames.begin(), kFigureNames.end()}; }
+
+Result<std::vector<FrameEvaluation>> evaluate_frames(const Recorded& result, const Recorded& truth,
+                                                     const BodyModel& body, const EvaluateOptions& options) {
+  const Sides sides(result, truth, options);
+  const auto figures = frame_figures(result, truth, body, sides);
+  if (!figures) return figures.failure();
+  std::vector<FrameEvaluation> frames;
+  frames.reserve(sides.frames.size());
+  for (size_t i = 0; i < sides.frames.size(); ++i) {
+    frames.push_back({sides.frames[i], {(*figures)[i].begin(), (*figures)[i].end()}});
+  }
+  return frames;
+}
+
 Result<Evaluation> evaluate(const Recorded& result, const Recorded& truth, const BodyModel& body,
                             const EvaluateOptions& options) {
-  check(options.start_s < options.end_s, "evaluate from {} to {} s", options.start_s, options.end_s);
-  const Side result_side(result), truth_side(truth);
+  const Sides sides(result, truth, options);
+  const auto figures = frame_figures(result, truth, body, sides);
+  if (!figures) return figures.failure();
   Evaluation evaluation;
-  std::vector<int64_t> frames;
-  for (const int64_t frame : true_frames(truth, truth_side, result_side, options)) {
-    const bool is_there = result_side.times.contains(frame) || result.mask_files.contains(frame);
-    if (is_there) frames.push_back(frame);
-    ++(is_there ? evaluation.frames : evaluation.frames_missing);
-  }
-
-  std::vector<FrameFigures> figures(frames.size());
-  std::vector<Result<void>> outcomes(frames.size());
-  parallel_for(frames.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const auto pose = result_side.poses.find(frames[i]), true_pose = truth_side.poses.find(frames[i]);
-      const bool has_pose = pose != result_side.poses.end();
-      if (has_pose && true_pose != truth_side.poses.end()) {
-        add_pose_errors(body.skeleton, pose->second->values, true_pose->second->values, figures[i]);
-      }
-      const auto joints = result_side.joints.find(frames[i]), true_joints = truth_side.joints.find(frames[i]);
-      if (joints != result_side.joints.end() && true_joints != truth_side.joints.end()) {
-        add_joint_errors(joints->second, true_joints->second, figures[i]);
-      }
-      outcomes[i] = add_mask_figures(result, truth, body, frames[i], has_pose ? pose->second : nullptr, figures[i]);
-    }
-  });
-  for (const Result<void>& outcome : outcomes) {
-    if (!outcome) return outcome.failure();
-  }
+  evaluation.frames = static_cast<int64_t>(sides.frames.size());
+  evaluation.frames_missing = sides.frames_missing;
   for (size_t k = 0; k < kNumFigures; ++k) {
-    evaluation.figures.emplace_back(kFigureNames[k], figure_over_frames(figures, k));
+    evaluation.figures.emplace_back(kFigureNames[k], figure_over_frames(*figures, k));
   }
   return evaluation;
 }

@@ -53,6 +53,19 @@ struct Evaluation {
   [[nodiscard]] std::optional<Figure> find(std::string_view name) const;
 };
 
+// One frame that both sides have: one value a name of figure_names(), nothing where it lacks what it needs.
+struct FrameEvaluation {
+  int64_t frame = 0;
+  std::vector<std::optional<double>> values;
+};
+
+// The figures' names in the order above.
+std::vector<std::string> figure_names();
+
+// The same figures frame by frame, ascending; frames that the result lacks are left out. Errors: as evaluate().
+Result<std::vector<FrameEvaluation>> evaluate_frames(const Recorded& result, const Recorded& truth,
+                                                     const BodyModel& body, const EvaluateOptions& options = {});
+
 // Visual accuracy renders the result's poses of `body` through the truth's first camera (the result's, where the truth
 // has none). Errors: a mask that cannot be read or has another size than its partner or the camera.
 Result<Evaluation> evaluate(const Recorded& result, const Recorded& truth, const BodyModel& body,

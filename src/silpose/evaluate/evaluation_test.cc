@@ -67,6 +67,19 @@ TEST(Evaluate, MatchesFramesByNumberAndTakesMeanAndSpread) {
                                           "visual_accuracy", "mask_iou"));
 }
 
+TEST(Evaluate, FrameByFrame) {
+  Recorded result, truth;
+  truth.poses = PoseTable{.rows = {pose(2, 0), pose(3, 0), pose(4, 0)}};
+  result.poses = PoseTable{.rows = {pose(3, 4), pose(4, -8)}};
+  const auto frames = evaluate_frames(result, truth, body()).value();
+  ASSERT_EQ(frames.size(), 2u);
+  EXPECT_EQ(frames[1].frame, 4);
+  ASSERT_EQ(frames[1].values.size(), figure_names().size());
+  EXPECT_EQ(figure_names()[1], "pose_error_deg");
+  EXPECT_NEAR(frames[1].values[1].value(), 8, 1e-9);
+  EXPECT_FALSE(frames[1].values[3].has_value());
+}
+
 TEST(Evaluate, StartAndEndAreTheTruthsTimes) {
   Recorded result, truth;
   for (int64_t frame = 0; frame < 10; ++frame) {
