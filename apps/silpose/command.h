@@ -52,6 +52,7 @@ Command add_synth(CLI::App& program, const CommonOptions& common);
 Command add_evaluate(CLI::App& program, const CommonOptions& common);
 Command add_segment(CLI::App& program, const CommonOptions& common);
 Command add_render(CLI::App& program, const CommonOptions& common);
+Command add_experiment(CLI::App& program, const CommonOptions& common);
 std::vector<Command> add_model(CLI::App& program, CommonOptions& common);
 
 // A check for options: a finite number from `low` to `high`, both included.

@@ -1,0 +1,170 @@
+// silpose experiment: runs experiments that experiments/NAME.toml describe, and writes their figures, tables and plots.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "apps/silpose/body_choice.h"
+#include "apps/silpose/command.h"
+#include "apps/silpose/experiment_directory.h"
+#include "apps/silpose/run_facts.h"
+#include "silpose/experiment/engine.h"
+#include "silpose/experiment/results.h"
+#include "silpose/experiment/tracking_runs.h"
+#include "silpose_commit.h"
+
+namespace silpose::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExperimentOptions {
+  std::vector<std::string> names;
+  std::string out, data;
+  std::optional<int> seeds;
+  bool list = false, quick = false, resume = false;
+};
+
+// Where the descriptions lie: experiments/ of the source tree this was built from, else
+// ../share/silpose/experiments beside the program.
+fs::path description_folder() {
+  std::error_code failed;
+  if (fs::exists(SILPOSE_EXPERIMENTS_DIR, failed)) return SILPOSE_EXPERIMENTS_DIR;
+  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
+  return program.parent_path().parent_path() / "share" / "silpose" / "experiments";
+}
+
+std::vector<fs::path> all_descriptions() {
+  std::vector<fs::path> files;
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(description_folder(), failed)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// NAME, or a path to a description of one's own.
+Result<fs::path> find_description(const std::string& name) {
+  if (fs::path(name).extension() == ".toml") return fs::path(name);
+  std::vector<std::string> known;
+  for (const fs::path& file : all_descriptions()) {
+    known.push_back(file.stem().string());
+    if (known.back() == name) return file;
+  }
+  return error("{}: no such experiment ({}, or a .toml file)", name, fmt::join(known, ", "));
+}
+
+Result<Outcome> list_experiments(const ExperimentOptions& options) {
+  Outcome outcome;
+  outcome.is_answer = true;
+  outcome.json["experiments"] = nlohmann::ordered_json::array();
+  for (const fs::path& file : all_descriptions()) {
+    const Result<Grid> grid = read_grid(file, options.quick);
+    if (!grid) return grid.failure();
+    const size_t runs = grid->cells.size() * static_cast<size_t>(options.seeds.value_or(grid->seeds));
+    outcome.json["experiments"].push_back({{"name", grid->name}, {"title", grid->title}, {"runs", runs}});
+    outcome.text += fmt::format("{}{:18} {:5} runs  {}", outcome.text.empty() ? "" : "\n", grid->name, runs,
+                                grid->title);
+  }
+  if (outcome.text.empty()) return error("{}: no experiments", description_folder().string());
+  return outcome;
+}
+
+// Motion-capture files that a grid needs: told before hours of work, not after.
+Result<void> check_motion_files(const Grid& grid, const fs::path& data) {
+  for (const GridCell& cell : grid.cells) {
+    const std::string& motion = cell.settings.motion;
+    if (!is_motion_file(motion)) continue;
+    if (data.empty()) {
+      return error("{}: needs motion-capture files ({} and others): give their folder with --data", grid.name, motion);
+    }
+    std::error_code failed;
+    if (!fs::is_regular_file(data / motion, failed)) return error("{}: no such file", (data / motion).string());
+  }
+  return {};
+}
+
+Result<std::vector<Grid>> read_grids(const ExperimentOptions& options) {
+  std::vector<Grid> grids;
+  for (const std::string& name : options.names) {
+    const Result<fs::path> file = find_description(name);
+    if (!file) return file.failure();
+    Result<Grid> grid = read_grid(*file, options.quick);
+    if (!grid) return grid.failure();
+    if (options.seeds) grid->seeds = *options.seeds;
+    for (const Grid& other : grids) {
+      if (other.name == grid->name) throw UsageError(fmt::format("{}: is there twice", grid->name));
+    }
+    const Result<void> files = check_motion_files(*grid, options.data);
+    if (!files) return files.failure();
+    grids.push_back(std::move(*grid));
+  }
+  return grids;
+}
+
+Result<Outcome> run_experiments(const ExperimentOptions& options, const CommonOptions& common, Console& console) {
+  if (options.list) return list_experiments(options);
+  if (options.names.empty()) throw UsageError("NAME is missing; --list tells the experiments");
+  if (options.out.empty()) throw UsageError("--out is missing");
+  const Result<std::vector<Grid>> grids = read_grids(options);
+  if (!grids) return grids.failure();
+  Result<ExperimentDirectory> directory = ExperimentDirectory::create(options.out, options.resume);
+  if (!directory) return directory.failure();
+
+  Outcome outcome;
+  outcome.is_answer = true;
+  outcome.json = run_facts(common);
+  outcome.json["out"] = options.out;
+  outcome.json["experiments"] = nlohmann::ordered_json::object();
+  TrackingRuns tracking([&](const std::string& model) { return choose_body(model, console); }, options.data);
+  const Runner runner = [&](const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on) {
+    return tracking.run(settings, seed, go_on);
+  };
+  std::vector<std::string> names;
+  for (const Grid& grid : *grids) {
+    const auto runs = run_grid(grid, {.first_seed = common.seed, .seeds = grid.seeds}, directory->path(grid.name),
+                               runner, &console);
+    if (!runs) return error("{} (finished runs are in {}.partial, for --resume)", runs.error().message, options.out);
+    if (!*runs) {
+      outcome.interrupted = true;
+      outcome.is_answer = false;
+      outcome.text = fmt::format("interrupted; finished runs are in {}.partial, for --resume", options.out);
+      return outcome;
+    }
+    const Result<ResultTable> table = write_results(directory->path(grid.name), grid, **runs,
+                                                    {.command = common.command_line,
+                                                     .commit = SILPOSE_COMMIT,
+                                                     .machine = machine_name(),
+                                                     .seed = common.seed,
+                                                     .seeds = grid.seeds,
+                                                     .quick = options.quick});
+    if (!table) return table.failure();
+    names.push_back(grid.name);
+    outcome.json["experiments"][grid.name] = {{"runs", (*runs)->size()}, {"results", grid.name + "/results.json"}};
+    outcome.text += (outcome.text.empty() ? "" : "\n\n") + text_from_table(*table);
+  }
+  const Result<void> done = directory->commit(names);
+  if (!done) return done.failure();
+  return outcome;
+}
+
+}  // namespace
+
+Command add_experiment(CLI::App& program, const CommonOptions& common) {
+  const auto options = std::make_shared<ExperimentOptions>();
+  CLI::App* const app = program.add_subcommand("experiment", "Run experiments and write their figures");
+  app->add_option("NAME", options->names, "Experiments, as --list tells them, or .toml files that describe one");
+  app->add_option("--out", options->out, "Directory for the results, a folder each");
+  app->add_flag("--list", options->list, "Tell the experiments there are");
+  app->add_flag("--quick", options->quick, "A small part of each, to see that it works");
+  app->add_option("--seeds", options->seeds, "How many seeds, counted from --seed; default: as the experiment says")
+      ->check(CLI::Range(1, 10'000));
+  app->add_flag("--resume", options->resume, "Go on from the runs in DIR.partial");
+  app->add_option("--data", options->data, "Folder of motion-capture files, for experiments that need them");
+  return {app, [options, &common](Console& console) { return run_experiments(*options, common, console); }};
+}
+
+}  // namespace silpose::app

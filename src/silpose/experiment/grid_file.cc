@@ -1,0 +1,435 @@
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <set>
+#include <string_view>
+
+#include "silpose/base/text_file.h"
+#include "silpose/experiment/grid.h"
+
+namespace silpose {
+namespace {
+
+using Texts = std::vector<std::string>;
+
+// A value of the file and the words that name it in errors.
+struct Entry {
+  const toml::node& node;
+  std::string where;  // "grid.toml: run.frames"
+};
+
+Result<std::string> text_of(const Entry& entry) {
+  if (const auto text = entry.node.value_exact<std::string>()) return *text;
+  return error("{}: a text is wanted", entry.where);
+}
+
+Result<bool> flag_of(const Entry& entry) {
+  if (const auto flag = entry.node.value_exact<bool>()) return *flag;
+  return error("{}: true or false is wanted", entry.where);
+}
+
+Result<double> number_of(const Entry& entry, double low, double high) {
+  if (const auto value = entry.node.is_number() ? entry.node.value<double>() : std::nullopt) {
+    if (std::isfinite(*value) && *value >= low && *value <= high) return *value;
+  }
+  return error("{}: a number from {:g} to {:g} is wanted", entry.where, low, high);
+}
+
+Result<int> integer_of(const Entry& entry, int low, int high) {
+  if (const auto value = entry.node.value_exact<int64_t>(); value && *value >= low && *value <= high) {
+    return static_cast<int>(*value);
+  }
+  return error("{}: a whole number from {} to {} is wanted", entry.where, low, high);
+}
+
+Result<Texts> texts_of(const Entry& entry) {
+  const toml::array* const array = entry.node.as_array();
+  if (array == nullptr) return error("{}: a list of texts is wanted", entry.where);
+  Texts texts;
+  for (const toml::node& element : *array) {
+    const auto text = element.value_exact<std::string>();
+    if (!text) return error("{}: a list of texts is wanted", entry.where);
+    texts.push_back(*text);
+  }
+  return texts;
+}
+
+Result<std::array<double, 2>> pair_of(const Entry& entry, double low, double high) {
+  const toml::array* const array = entry.node.as_array();
+  if (array == nullptr || array->size() != 2) return error("{}: two numbers are wanted", entry.where);
+  std::array<double, 2> pair{};
+  for (size_t i = 0; i < 2; ++i) {
+    const Result<double> number = number_of({(*array)[i], entry.where}, low, high);
+    if (!number) return number.failure();
+    pair[i] = *number;
+  }
+  return pair;
+}
+
+// Takes a value over when it was read.
+template <class T, class U>
+Result<void> take(const Result<T>& read, U& into) {
+  if (!read) return read.failure();
+  into = *read;
+  return {};
+}
+
+Result<void> take_word(const Entry& entry, std::initializer_list<std::string_view> words, std::string& into) {
+  const Result<std::string> text = text_of(entry);
+  if (!text) return text.failure();
+  if (std::find(words.begin(), words.end(), *text) == words.end()) {
+    return error("{}: '{}' is not one of {}", entry.where, *text, fmt::join(words, ", "));
+  }
+  into = *text;
+  return {};
+}
+
+constexpr int kMost = 1'000'000;
+using Setter = std::function<Result<void>(const Entry&, RunSettings&)>;
+
+Result<void> set_size(const Entry& entry, RunSettings& run) {
+  const auto size = pair_of(entry, 16, 8192);
+  if (!size) return size.failure();
+  run.width = static_cast<int>((*size)[0]);
+  run.height = static_cast<int>((*size)[1]);
+  return {};
+}
+
+// One view, as an axis of plain values gives it.
+Result<void> set_view(const Entry& entry, RunSettings& run) {
+  const Result<std::string> view = text_of(entry);
+  if (!view) return view.failure();
+  run.views = {*view};
+  return {};
+}
+
+const std::map<std::string, Setter, std::less<>>& setters() {
+  static const std::map<std::string, Setter, std::less<>> kSetters = {
+      {"model", [](const Entry& e, RunSettings& run) { return take(text_of(e), run.model); }},
+      {"motion", [](const Entry& e, RunSettings& run) { return take(text_of(e), run.motion); }},
+      {"frames", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 0, kMost), run.frames); }},
+      {"fps", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.1, 10000), run.fps); }},
+      {"amplitude_deg",
+       [](const Entry& e, RunSettings& run) { return take(number_of(e, 0, 180), run.amplitude_deg); }},
+      {"period_s", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.01, 1e6), run.period_s); }},
+      {"range", [](const Entry& e, RunSettings& run) { return take(pair_of(e, -1000, 1000), run.range); }},
+      {"views", [](const Entry& e, RunSettings& run) { return take(texts_of(e), run.views); }},
+      {"view", set_view},
+      {"size", set_size},
+      {"focal_px", [](const Entry& e, RunSettings& run) { return take(number_of(e, 1, 1e6), run.focal_px); }},
+      {"distance_m", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.5, 200), run.distance_m); }},
+      {"mask_noise",
+       [](const Entry& e, RunSettings& run) {
+         return take_word(e, {"none", "shadow", "edge", "limb", "hole"}, run.mask_noise);
+       }},
+      {"mask_iou", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.05, 0.999), run.mask_iou); }},
+      {"preset",
+       [](const Entry& e, RunSettings& run) { return take_word(e, {"default", "accurate", "thesis"}, run.preset); }},
+      {"smooth", [](const Entry& e, RunSettings& run) { return take(flag_of(e), run.smooth); }},
+      {"hypotheses", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, 10000), run.hypotheses); }},
+      {"particles", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, kMost), run.particles); }},
+      {"layers", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, 1000), run.layers); }},
+      {"body_height", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.5, 2), run.body_height); }},
+      {"body_weight", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.3, 3), run.body_weight); }},
+      {"start", [](const Entry& e, RunSettings& run) { return take_word(e, {"tracker", "truth"}, run.start); }},
+  };
+  return kSetters;
+}
+
+// Applies every key of a table but `except`.
+Result<void> apply(const toml::table& table, const std::string& where, RunSettings& run, std::string_view except = "") {
+  for (const auto& [key, node] : table) {
+    if (key.str() == except) continue;
+    const Entry entry{node, fmt::format("{}.{}", where, key.str())};
+    const auto setter = setters().find(key.str());
+    if (setter == setters().end()) return error("{}: no such setting", entry.where);
+    const Result<void> set = setter->second(entry, run);
+    if (!set) return set.failure();
+  }
+  return {};
+}
+
+// One point of an axis: its label, and what it sets.
+struct AxisValue {
+  std::string label;
+  toml::table settings;
+};
+struct Axis {
+  std::string name;
+  std::vector<AxisValue> values;
+};
+
+// values: tables with a label, or, with `key`, plain values of that setting, which label themselves.
+Result<Axis> read_axis(const toml::table& table, const std::string& file) {
+  Axis axis;
+  const std::string where = file + ": axis";
+  std::string key;
+  for (const auto& [word, node] : table) {
+    const Entry entry{node, fmt::format("{}.{}", where, word.str())};
+    if (word == "name" || word == "key") {
+      const Result<void> taken = take(text_of(entry), word == "name" ? axis.name : key);
+      if (!taken) return taken.failure();
+    } else if (word != "values") {
+      return error("{}: no such key (name, key, values)", entry.where);
+    }
+  }
+  if (axis.name.empty()) return error("{}.name: is missing", where);
+  const std::string values = fmt::format("{} '{}'.values", where, axis.name);
+  const toml::array* const array = table["values"].as_array();
+  if (array == nullptr || array->empty()) return error("{}: a list is wanted", values);
+  std::set<std::string> labels;
+  for (const toml::node& node : *array) {
+    AxisValue value;
+    if (const toml::table* const settings = node.as_table(); settings != nullptr && key.empty()) {
+      const auto label = (*settings)["label"].value_exact<std::string>();
+      if (!label) return error("{}: each needs a label, a text", values);
+      value = {*label, *settings};
+      value.settings.erase("label");
+    } else if (settings == nullptr && !key.empty()) {
+      value.label = node.is_string() ? *node.value<std::string>() : fmt::format("{:g}", node.value_or(0.0));
+      value.settings.insert(key, node);
+    } else {
+      return error("{}: tables with a label are wanted, or with `key` plain values", values);
+    }
+    if (!labels.insert(value.label).second) return error("{}: '{}' is there twice", values, value.label);
+    axis.values.push_back(std::move(value));
+  }
+  return axis;
+}
+
+// [quick.axes] NAME = [labels]: only those stay.
+Result<void> keep_only(const toml::table& chosen, const std::string& file, std::vector<Axis>& axes) {
+  for (const auto& [name, node] : chosen) {
+    const Entry entry{node, fmt::format("{}: quick.axes.{}", file, name.str())};
+    const auto axis = std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == name.str(); });
+    if (axis == axes.end()) return error("{}: no such axis", entry.where);
+    const Result<Texts> labels = texts_of(entry);
+    if (!labels) return labels.failure();
+    std::vector<AxisValue> kept;
+    for (const std::string& label : *labels) {
+      const auto value = std::find_if(axis->values.begin(), axis->values.end(),
+                                      [&](const AxisValue& v) { return v.label == label; });
+      if (value == axis->values.end()) return error("{}: the axis has no '{}'", entry.where, label);
+      kept.push_back(*value);
+    }
+    if (kept.empty()) return error("{}: names none", entry.where);
+    axis->values = std::move(kept);
+  }
+  return {};
+}
+
+// Every combination of the axes' values, the last axis fastest; `last` wins over everything.
+Result<void> make_cells(const std::vector<Axis>& axes, const toml::table* last, const RunSettings& base,
+                        const std::string& file, Grid& grid) {
+  for (const Axis& axis : axes) {
+    grid.axes.push_back({axis.name, {}});
+    for (const AxisValue& value : axis.values) grid.axes.back().labels.push_back(value.label);
+  }
+  std::vector<GridCell> cells = {{{}, base}};
+  for (const Axis& axis : axes) {
+    std::vector<GridCell> longer;
+    for (const GridCell& cell : cells) {
+      for (const AxisValue& value : axis.values) {
+        GridCell next = cell;
+        next.labels.push_back(value.label);
+        const std::string where = fmt::format("{}: axis '{}', '{}'", file, axis.name, value.label);
+        const Result<void> applied = apply(value.settings, where, next.settings);
+        if (!applied) return applied.failure();
+        longer.push_back(std::move(next));
+      }
+    }
+    cells = std::move(longer);
+  }
+  if (last != nullptr) {
+    for (GridCell& cell : cells) {
+      const Result<void> applied = apply(*last, file + ": quick.run", cell.settings);
+      if (!applied) return applied.failure();
+    }
+  }
+  grid.cells = std::move(cells);
+  return {};
+}
+
+Result<void> check_axes_named(const Texts& names, const Grid& grid, const std::string& where) {
+  for (const std::string& name : names) {
+    const bool known = std::any_of(grid.axes.begin(), grid.axes.end(),
+                                   [&](const GridAxis& axis) { return axis.name == name; });
+    if (!known) return error("{}: no axis '{}'", where, name);
+  }
+  return {};
+}
+
+Result<TableDescription> read_table(const toml::table& table, const Grid& grid, const std::string& file) {
+  TableDescription description;
+  for (const auto& [key, node] : table) {
+    const Entry entry{node, fmt::format("{}: table.{}", file, key.str())};
+    Result<void> taken;
+    if (key == "name") taken = take(text_of(entry), description.name);
+    else if (key == "title") taken = take(text_of(entry), description.title);
+    else if (key == "family") taken = take(text_of(entry), description.family);
+    else if (key == "beside") taken = take(text_of(entry), description.beside);
+    else if (key == "mean_row") taken = take(flag_of(entry), description.mean_row);
+    else if (key == "figures") taken = take(texts_of(entry), description.figures);
+    else if (key == "rows" || key == "columns") {
+      Texts& axes = key == "rows" ? description.rows : description.columns;
+      taken = take(texts_of(entry), axes);
+      if (taken) taken = check_axes_named(axes, grid, entry.where);
+    } else {
+      taken = error("{}: no such key", entry.where);
+    }
+    if (!taken) return taken.failure();
+  }
+  if (description.name.empty()) return error("{}: table.name: is missing", file);
+  if (description.name == "runs" || description.name == "frames") {
+    return error("{}: table.name: '{}' is the name of another file", file, description.name);
+  }
+  if (description.figures.empty() == description.family.empty()) {
+    return error("{}: table '{}': either figures or family is wanted", file, description.name);
+  }
+  return description;
+}
+
+Result<PlotDescription> read_plot(const toml::table& table, const Grid& grid, const std::string& file) {
+  PlotDescription plot;
+  for (const auto& [key, node] : table) {
+    const Entry entry{node, fmt::format("{}: plot.{}", file, key.str())};
+    Result<void> taken;
+    if (key == "name") taken = take(text_of(entry), plot.name);
+    else if (key == "title") taken = take(text_of(entry), plot.title);
+    else if (key == "x") taken = take(text_of(entry), plot.x);
+    else if (key == "series") taken = take(text_of(entry), plot.series);
+    else if (key == "figure") taken = take(text_of(entry), plot.figure);
+    else if (key == "label") taken = take(text_of(entry), plot.label);
+    else if (key == "beside") taken = take(texts_of(entry), plot.beside);
+    else taken = error("{}: no such key", entry.where);
+    if (!taken) return taken.failure();
+  }
+  for (const auto& [word, text] : {std::pair<const char*, std::string>{"name", plot.name}, {"x", plot.x},
+                                   {"figure", plot.figure}}) {
+    if (text.empty()) return error("{}: plot.{}: is missing", file, word);
+  }
+  const std::string where = fmt::format("{}: plot '{}'", file, plot.name);
+  Texts axes;
+  if (plot.x != "frame") axes.push_back(plot.x);
+  if (!plot.series.empty()) axes.push_back(plot.series);
+  const Result<void> known = check_axes_named(axes, grid, where);
+  if (!known) return known.failure();
+  return plot;
+}
+
+// The tables of an array of tables. Errors: it is something else.
+Result<std::vector<const toml::table*>> tables_of(const toml::table& root, const std::string& key,
+                                                  const std::string& file) {
+  std::vector<const toml::table*> tables;
+  const toml::node* const node = root.get(key);
+  if (node == nullptr) return tables;
+  const toml::array* const array = node->as_array();
+  if (array == nullptr) return error("{}: {}: [[{}]] is wanted", file, key, key);
+  for (const toml::node& element : *array) {
+    if (element.as_table() == nullptr) return error("{}: {}: [[{}]] is wanted", file, key, key);
+    tables.push_back(element.as_table());
+  }
+  return tables;
+}
+
+// [quick]: how the same grid is made small.
+struct Quick {
+  std::optional<int> seeds;
+  const toml::table* run = nullptr;
+  const toml::table* axes = nullptr;
+};
+
+Result<Quick> read_quick(const toml::table& root, const std::string& file) {
+  Quick quick;
+  const toml::node* const node = root.get("quick");
+  if (node == nullptr) return quick;
+  const toml::table* const table = node->as_table();
+  if (table == nullptr) return error("{}: quick: a table is wanted", file);
+  for (const auto& [key, value] : *table) {
+    const Entry entry{value, fmt::format("{}: quick.{}", file, key.str())};
+    if (key == "seeds") {
+      const Result<void> taken = take(integer_of(entry, 1, 10000), quick.seeds);
+      if (!taken) return taken.failure();
+    } else if (key == "run" || key == "axes") {
+      if (value.as_table() == nullptr) return error("{}: a table is wanted", entry.where);
+      (key == "run" ? quick.run : quick.axes) = value.as_table();
+    } else {
+      return error("{}: no such key (seeds, run, axes)", entry.where);
+    }
+  }
+  return quick;
+}
+
+}  // namespace
+
+Result<Grid> read_grid(const std::filesystem::path& path, bool quick_wanted) {
+  const std::string file = path.string();
+  const Result<std::string> text = read_text_file(path);
+  if (!text) return text.failure();
+  toml::table root;
+  try {
+    root = toml::parse(std::string_view(*text));
+  } catch (const toml::parse_error& broken) {
+    return error("{}: line {}: {}", file, broken.source().begin.line, broken.description());
+  }
+
+  Grid grid;
+  grid.name = path.stem().string();
+  grid.folder = path.parent_path();
+  RunSettings base;
+  for (const auto& [key, node] : root) {
+    const Entry entry{node, fmt::format("{}: {}", file, key.str())};
+    Result<void> taken;
+    if (key == "title") {
+      taken = take(text_of(entry), grid.title);
+    } else if (key == "seeds") {
+      taken = take(integer_of(entry, 1, 10000), grid.seeds);
+    } else if (key == "run") {
+      const toml::table* const run = node.as_table();
+      taken = run == nullptr ? Result<void>(error("{}: a table is wanted", entry.where)) : apply(*run, entry.where, base);
+    } else if (key != "axis" && key != "table" && key != "plot" && key != "quick") {
+      taken = error("{}: no such key", entry.where);
+    }
+    if (!taken) return taken.failure();
+  }
+  const Result<Quick> quick = read_quick(root, file);
+  if (!quick) return quick.failure();
+  if (quick_wanted) grid.seeds = quick->seeds.value_or(1);
+
+  std::vector<Axis> axes;
+  const auto axis_tables = tables_of(root, "axis", file);
+  if (!axis_tables) return axis_tables.failure();
+  for (const toml::table* const table : *axis_tables) {
+    Result<Axis> axis = read_axis(*table, file);
+    if (!axis) return axis.failure();
+    axes.push_back(std::move(*axis));
+  }
+  if (quick_wanted && quick->axes != nullptr) {
+    const Result<void> kept = keep_only(*quick->axes, file, axes);
+    if (!kept) return kept.failure();
+  }
+  const Result<void> made = make_cells(axes, quick_wanted ? quick->run : nullptr, base, file, grid);
+  if (!made) return made.failure();
+
+  const auto tables = tables_of(root, "table", file), plots = tables_of(root, "plot", file);
+  if (!tables) return tables.failure();
+  if (!plots) return plots.failure();
+  if (tables->empty()) return error("{}: table: at least one [[table]] is wanted", file);
+  for (const toml::table* const table : *tables) {
+    Result<TableDescription> description = read_table(*table, grid, file);
+    if (!description) return description.failure();
+    grid.tables.push_back(std::move(*description));
+  }
+  for (const toml::table* const table : *plots) {
+    Result<PlotDescription> plot = read_plot(*table, grid, file);
+    if (!plot) return plot.failure();
+    grid.plots.push_back(std::move(*plot));
+  }
+  return grid;
+}
+
+}  // namespace silpose

@@ -1,0 +1,135 @@
+#include "silpose/experiment/grid.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace silpose {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+namespace fs = std::filesystem;
+
+constexpr const char* kTable = "[[table]]\nname = \"errors\"\nfigures = [\"joint_error_mm\"]\n";
+
+Result<Grid> read(const std::string& text, bool quick = false) {
+  const fs::path file = fs::path(testing::TempDir()) /
+                        (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_grid.toml");
+  std::ofstream(file) << text;
+  Result<Grid> grid = read_grid(file, quick);
+  fs::remove(file);
+  return grid;
+}
+
+const std::string kTwoAxes = std::string(R"(
+title = "Two axes"
+seeds = 3
+[run]
+frames = 40
+motion = "sway"
+[[axis]]
+name = "case"
+values = [{ label = "exact" }, { label = "tall", body_height = 1.05, frames = 20 }]
+[[axis]]
+name = "view"
+key = "view"
+values = ["front", "side", "45"]
+[quick]
+run = { frames = 5 }
+axes = { view = ["side"] }
+)") + kTable;
+
+TEST(ReadGrid, MakesEveryCombinationTheLastAxisFastest) {
+  const Grid grid = read(kTwoAxes).value();
+  EXPECT_EQ(grid.title, "Two axes");
+  EXPECT_EQ(grid.seeds, 3);
+  ASSERT_EQ(grid.cells.size(), 6u);
+  EXPECT_THAT(grid.cells[0].labels, ElementsAre("exact", "front"));
+  EXPECT_THAT(grid.cells[1].labels, ElementsAre("exact", "side"));
+  EXPECT_THAT(grid.cells[5].labels, ElementsAre("tall", "45"));
+  EXPECT_EQ(grid.cells[1].settings.frames, 40);
+  EXPECT_EQ(grid.cells[5].settings.frames, 20);
+  EXPECT_EQ(grid.cells[5].settings.body_height, 1.05);
+  EXPECT_THAT(grid.cells[5].settings.views, ElementsAre("45"));
+  EXPECT_EQ(grid.cells[5].settings.motion, "sway");
+}
+
+TEST(ReadGrid, QuickKeepsTheChosenLabelsAndItsSettingsWin) {
+  const Grid grid = read(kTwoAxes, true).value();
+  EXPECT_EQ(grid.seeds, 1);
+  ASSERT_EQ(grid.cells.size(), 2u);
+  EXPECT_THAT(grid.cells[1].labels, ElementsAre("tall", "side"));
+  EXPECT_EQ(grid.cells[1].settings.frames, 5);
+}
+
+TEST(ReadGrid, WithoutAxesThereIsOneCell) {
+  const Grid grid = read(kTable).value();
+  ASSERT_EQ(grid.cells.size(), 1u);
+  EXPECT_EQ(grid.cells[0].settings, RunSettings());
+}
+
+struct BadGrid {
+  std::string text, says;
+};
+
+TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
+  const std::string axis = "[[axis]]\nname = \"view\"\n";
+  const std::vector<BadGrid> all = {
+      {"run = { frames = -3 }\n", "run.frames: a whole number"},
+      {"run = { frames = 2.5 }\n", "run.frames: a whole number"},
+      {"run = { fps = \"fast\" }\n", "run.fps: a number"},
+      {"run = { speed = 3 }\n", "run.speed: no such setting"},
+      {"run = { preset = \"best\" }\n", "run.preset: 'best' is not one of"},
+      {"run = { views = \"front\" }\n", "run.views: a list of texts"},
+      {"run = { size = [640] }\n", "run.size: two numbers"},
+      {"run = 3\n", "run: a table"},
+      {"sedes = 3\n", "sedes: no such key"},
+      {"seeds = 0\n", "seeds: a whole number"},
+      {"title = 3\n", "title: a text"},
+      {"axis = 3\n", "axis: [[axis]] is wanted"},
+      {"[[axis]]\nvalues = [1]\n", "axis.name: is missing"},
+      {axis, "axis 'view'.values: a list"},
+      {axis + "values = [\"front\"]\n", "axis 'view'.values: tables with a label"},
+      {axis + "values = [{ view = \"front\" }]\n", "axis 'view'.values: each needs a label"},
+      {axis + "key = \"view\"\nvalues = [\"side\", \"side\"]\n", "'side' is there twice"},
+      {axis + "key = \"sight\"\nvalues = [\"side\"]\n", "sight: no such setting"},
+      {axis + "key = \"view\"\nvalues = [\"side\"]\n[[table]]\nname = \"t\"\nrows = [\"clip\"]\nfigures = [\"iou\"]\n",
+       "table.rows: no axis 'clip'"},
+      {"[[table]]\nfigures = [\"iou\"]\n", "table.name: is missing"},
+      {"[[table]]\nname = \"runs\"\nfigures = [\"iou\"]\n", "'runs' is the name of another file"},
+      {"[[table]]\nname = \"t\"\n", "either figures or family"},
+      {"[[table]]\nname = \"t\"\nfigures = [\"iou\"]\nsort = true\n", "table.sort: no such key"},
+      {"[[plot]]\nname = \"p\"\nx = \"frame\"\n", "plot.figure: is missing"},
+      {"[[plot]]\nname = \"p\"\nx = \"clip\"\nfigure = \"iou\"\n", "no axis 'clip'"},
+      {"seeds = = 3\n", "line 1"},
+  };
+  for (const BadGrid& bad : all) {
+    const bool has_table = bad.text.find("[[table]]") != std::string::npos;
+    const Result<Grid> grid = read(bad.text + (has_table ? "" : kTable));
+    ASSERT_FALSE(grid.ok()) << bad.text;
+    EXPECT_THAT(grid.error().message, AllOf(HasSubstr("_grid.toml"), HasSubstr(bad.says), Not(HasSubstr("\n"))))
+        << bad.text;
+  }
+  EXPECT_THAT(read("title = \"none\"\n").error().message, HasSubstr("table: at least one"));
+  EXPECT_THAT(read(std::string("[quick]\naxes = { view = [\"side\"] }\n") + kTable, true).error().message,
+              HasSubstr("quick.axes.view: no such axis"));
+  EXPECT_THAT(read_grid("/nowhere/x.toml", false).error().message, HasSubstr("/nowhere/x.toml"));
+}
+
+TEST(RunSettings, TextTellsEverySettingApart) {
+  const std::string plain = settings_text({});
+  EXPECT_NE(settings_text({.frames = 3}), plain);
+  EXPECT_NE(settings_text({.range = std::array<double, 2>{0, 1}}), plain);
+  EXPECT_NE(settings_text({.smooth = false}), plain);
+  EXPECT_NE(settings_text({.body_weight = 1.15}), plain);
+  EXPECT_EQ(settings_text({}), plain);
+  EXPECT_TRUE(is_motion_file("cmu_bvh/02_01_walk.bvh"));
+  EXPECT_FALSE(is_motion_file("dof:6"));
+}
+
+}  // namespace
+}  // namespace silpose

@@ -1,0 +1,225 @@
+#include "silpose/experiment/tracking_runs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "silpose/base/clock.h"
+#include "silpose/base/parallel.h"
+#include "silpose/experiment/score_run.h"
+#include "silpose/synth/degraded_mask.h"
+
+namespace silpose {
+namespace {
+
+// The one place that turns settings into options of the tracker. Errors: an option that it does not have.
+template <class Options>
+Result<void> choose_tracker(const RunSettings& settings, Options& options) {
+  options.preset = settings.preset;
+  options.num_particles = settings.particles;
+  options.num_layers = settings.layers;
+  if constexpr (requires { options.hypotheses; }) options.hypotheses = settings.hypotheses;
+  if constexpr (requires { options.smooth; }) options.smooth = settings.smooth;
+  try {
+    options.check();
+  } catch (const std::invalid_argument& wrong) {
+    return error("the tracker refuses its options: {}", wrong.what());
+  }
+  return {};
+}
+
+// The model of a person some percent taller or heavier than `body`.
+std::string model_beside(const std::string& model, const BodyModel& body, const RunSettings& settings) {
+  if (settings.body_height == 1 && settings.body_weight == 1) return model;
+  std::string person;  // the model's own keys, without stature and mass
+  const size_t colon = model.find(':');
+  for (size_t at = colon; at != std::string::npos && at + 1 < model.size();) {
+    const size_t comma = model.find(',', at + 1);
+    const std::string entry = model.substr(at + 1, comma == std::string::npos ? comma : comma - at - 1);
+    if (!entry.starts_with("height=") && !entry.starts_with("weight=")) person += entry + ",";
+    at = comma;
+  }
+  return fmt::format("{}:{}height={:.4f},weight={:.2f}", model.substr(0, colon), person,
+                     body.height_m * settings.body_height, body.weight_kg * settings.body_weight);
+}
+
+// A dof: motion swings over `range` (metres or degrees) in place of the DOF's limits.
+Result<void> use_range(const RunSettings& settings, const BodyModel& body, SyntheticMotion& motion) {
+  if (!settings.motion.starts_with("dof:")) {
+    return error("range: only for the motion dof:INDEX, not {}", settings.motion);
+  }
+  const auto index = static_cast<size_t>(std::stoul(settings.motion.substr(4)));  // make_motion took it
+  const Dof& dof = body.skeleton.dofs()[index];
+  const double scale = dof.is_translation ? 1 : to_radians(1);
+  const double lower = (*settings.range)[0] * scale, upper = (*settings.range)[1] * scale;
+  for (std::vector<double>& pose : motion.poses) {
+    pose[index] = lower + (upper - lower) * (pose[index] - dof.lower) / (dof.upper - dof.lower);
+  }
+  return {};
+}
+
+Result<SyntheticSequence> sequence_of(const RunSettings& settings, uint64_t seed, const std::filesystem::path& data,
+                                      const std::shared_ptr<const BodyModel>& body,
+                                      std::optional<double>& residual_deg) {
+  SceneOptions scene{.width = settings.width,
+                     .height = settings.height,
+                     .focal_px = settings.focal_px,
+                     .distance_m = settings.distance_m,
+                     .views = {}};
+  for (const std::string& text : settings.views) {
+    const Result<View> view = parse_view(text);
+    if (!view) return error("view {}: {}", text, view.error().message);
+    scene.views.push_back(*view);
+  }
+  if (scene.views.empty()) return error("views: at least one is wanted");
+  const bool is_file = is_motion_file(settings.motion);
+  Result<SyntheticMotion> motion = make_motion(is_file ? (data / settings.motion).string() : settings.motion, *body,
+                                               {.num_frames = settings.frames,
+                                                .fps = settings.fps,
+                                                .amplitude_deg = settings.amplitude_deg,
+                                                .period_s = settings.period_s,
+                                                .seed = seed});
+  if (!motion) return motion.failure();
+  residual_deg = motion->mean_residual_deg;
+  if (settings.range) {
+    const Result<void> used = use_range(settings, *body, *motion);
+    if (!used) return used.failure();
+  }
+  return make_sequence(body, *motion, scene);
+}
+
+// The masks of one camera [T], true or degraded.
+Result<std::vector<Mask>> masks_of(const SyntheticSequence& sequence, int camera_idx, const RunSettings& settings,
+                                   uint64_t seed) {
+  const Result<MaskFault> fault = parse_mask_fault(settings.mask_noise);
+  if (!fault) return error("mask_noise: {}", fault.error().message);
+  if (*fault != MaskFault::kNone) {
+    return degraded_masks(sequence, camera_idx,
+                          {.fault = *fault, .iou = settings.mask_iou, .outline = {}, .seed = seed});
+  }
+  std::vector<Mask> masks(static_cast<size_t>(sequence.num_frames()));
+  parallel_for(masks.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; ++t) masks[t] = true_mask(sequence, camera_idx, static_cast<int>(t));
+  });
+  return masks;
+}
+
+// What a segmenter would hand over.
+Observation observation_of(Mask mask) {
+  Observation observation;
+  observation.box = mask.bounding_box();
+  if (observation.box.empty()) {
+    observation.trust = {.overall = 0, .nothing_found = true};
+  } else {
+    observation.trust.touches_border = observation.box.x == 0 || observation.box.y == 0 ||
+                                       observation.box.x + observation.box.width == mask.width() ||
+                                       observation.box.y + observation.box.height == mask.height();
+  }
+  observation.mask = std::move(mask);
+  return observation;
+}
+
+double mean_overlap(const SyntheticSequence& sequence, const std::vector<ClipInstant>& instants) {
+  std::vector<double> overlap(instants.size());
+  parallel_for(instants.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; ++t) {
+      overlap[t] = intersection_over_union(instants[t].observations[0].mask,
+                                           true_mask(sequence, 0, static_cast<int>(t)));
+    }
+  });
+  double sum = 0;
+  for (const double value : overlap) sum += value;
+  return sum / static_cast<double>(overlap.size());
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const BodyModel>> TrackingRuns::body(const std::string& model) {
+  const auto kept = kept_bodies_.find(model);
+  if (kept != kept_bodies_.end()) return kept->second;
+  Result<std::shared_ptr<const BodyModel>> made = bodies_(model);
+  if (made) kept_bodies_.emplace(model, *made);
+  return made;
+}
+
+Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings, uint64_t seed) {
+  RunSettings sequence_only = settings;  // what does not touch the masks is as by default
+  const RunSettings defaults;
+  sequence_only.preset = defaults.preset;
+  sequence_only.smooth = defaults.smooth;
+  sequence_only.hypotheses = defaults.hypotheses;
+  sequence_only.particles = defaults.particles;
+  sequence_only.layers = defaults.layers;
+  sequence_only.body_height = defaults.body_height;
+  sequence_only.body_weight = defaults.body_weight;
+  sequence_only.start = defaults.start;
+  const bool is_drawn = settings.motion == "static" || settings.motion == "random" || settings.mask_noise != "none";
+  const std::string key = fmt::format("{} {}", settings_text(sequence_only), is_drawn ? seed : 0);
+  if (seen_ && seen_->key == key) return &*seen_;
+
+  seen_.reset();
+  const auto true_body = body(settings.model);
+  if (!true_body) return true_body.failure();
+  Seen seen;
+  seen.key = key;
+  Result<SyntheticSequence> sequence = sequence_of(settings, seed, data_, *true_body, seen.residual_deg);
+  if (!sequence) return sequence.failure();
+  seen.sequence = std::move(*sequence);
+  seen.instants.resize(static_cast<size_t>(seen.sequence.num_frames()));
+  for (size_t t = 0; t < seen.instants.size(); ++t) {
+    seen.instants[t].frame_idx = static_cast<int64_t>(t);
+    seen.instants[t].time_ns = std::llround(static_cast<double>(t) * 1e9 / seen.sequence.fps);
+  }
+  for (size_t c = 0; c < seen.sequence.cameras.size(); ++c) {
+    Result<std::vector<Mask>> masks = masks_of(seen.sequence, static_cast<int>(c), settings, seed);
+    if (!masks) return masks.failure();
+    for (size_t t = 0; t < masks->size(); ++t) {
+      seen.instants[t].observations.push_back(observation_of(std::move((*masks)[t])));
+    }
+  }
+  if (settings.mask_noise != "none") seen.mask_iou = mean_overlap(seen.sequence, seen.instants);
+  seen_ = std::move(seen);
+  return &*seen_;
+}
+
+Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, uint64_t seed,
+                                                   const std::function<bool()>& go_on) {
+  const Stopwatch all;
+  const auto seen = see(settings, seed);
+  if (!seen) return seen.failure();
+  const SyntheticSequence& sequence = (*seen)->sequence;
+  const auto tracker_body = body(model_beside(settings.model, *sequence.body, settings));
+  if (!tracker_body) return tracker_body.failure();
+
+  TrackerOptions options;
+  options.body = *tracker_body;
+  options.cameras = sequence.cameras;
+  options.seed = seed;
+  if (settings.start == "truth") options.initial_pose = sequence.poses[0];
+  const Result<void> chosen = choose_tracker(settings, options);
+  if (!chosen) return chosen.failure();
+  if (!go_on()) return std::optional<RunResult>();
+  bool stopped = false;
+  const Stopwatch tracking;
+  const std::vector<StepReport> reports = track_clip(options, (*seen)->instants, [&](size_t, size_t) {
+    stopped = stopped || !go_on();
+    return !stopped;
+  });
+  const double tracking_s = tracking.seconds();
+  if (stopped) return std::optional<RunResult>();
+
+  Result<RunResult> result = score_run(sequence, **tracker_body, reports);
+  if (!result) return result.failure();
+  double start_s = 0;
+  for (const StepReport& report : reports) start_s += report.seconds.start;
+  const auto num_frames = static_cast<double>(reports.size());
+  result->scores["frames_per_second"] = num_frames / std::max(tracking_s - start_s, 1e-9);
+  result->scores["frames_per_second_with_start"] = num_frames / std::max(tracking_s, 1e-9);
+  result->scores["start_s"] = start_s;
+  result->scores["mask_iou"] = (*seen)->mask_iou;
+  if ((*seen)->residual_deg) result->scores["retargeting_residual_deg"] = *(*seen)->residual_deg;
+  result->wall_s = all.seconds();
+  return std::optional<RunResult>(std::move(*result));
+}
+
+}  // namespace silpose

@@ -1,0 +1,57 @@
+// TrackingRuns: runs of an experiment, each from its settings to its scores: makes the sequence and its masks, tracks it
+// in process, and scores the result.
+// Threads: one thread; a run itself uses all cores and, times apart, gives the same result on any number.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "silpose/base/result.h"
+#include "silpose/body/body_model.h"
+#include "silpose/experiment/run_result.h"
+#include "silpose/experiment/run_settings.h"
+#include "silpose/synth/scene.h"
+#include "silpose/track/track_clip.h"
+
+namespace silpose {
+
+// The body of a model's name ("human:height=1.8").
+using BodySource = std::function<Result<std::shared_ptr<const BodyModel>>(const std::string& model)>;
+
+class TrackingRuns {
+ public:
+  // `data`: the folder of motion-capture files; empty where none was given.
+  TrackingRuns(BodySource bodies, std::filesystem::path data) : bodies_(std::move(bodies)), data_(std::move(data)) {}
+
+  // The seed is that of the motion, the masks' noise and the tracker. `go_on` is asked after each frame; when it says
+  // false there is no result. Scores: those of score_run(), frames_per_second (the tracker alone), start_s, mask_iou
+  // (of the masks given to the tracker, first camera) and, of motion capture, retargeting_residual_deg.
+  // Errors: a body, motion, view or option that is not there; the motion does not fit into the picture.
+  Result<std::optional<RunResult>> run(const RunSettings& settings, uint64_t seed,
+                                       const std::function<bool()>& go_on);
+
+ private:
+  // A sequence with its masks, kept for the next run, which often differs in the tracker only.
+  struct Seen {
+    std::string key;
+    SyntheticSequence sequence;
+    std::vector<ClipInstant> instants;
+    std::optional<double> residual_deg;
+    double mask_iou = 1;
+  };
+  Result<const Seen*> see(const RunSettings& settings, uint64_t seed);
+  Result<std::shared_ptr<const BodyModel>> body(const std::string& model);
+
+  BodySource bodies_;
+  std::filesystem::path data_;
+  std::map<std::string, std::shared_ptr<const BodyModel>> kept_bodies_;
+  std::optional<Seen> seen_;
+};
+
+}  // namespace silpose
