@@ -104,8 +104,8 @@ TEST(FindPart, KnowsTheNamesOfCommonRigs) {
   EXPECT_EQ(find_part({"hip", "lCollar", "lShldr", "lForeArm"}, "left_upper_arm"), 2);
   EXPECT_EQ(find_part({"Hips", "LeftHip", "LeftKnee"}, "left_thigh"), 1);
   EXPECT_EQ(find_part({"right_shoulder", "right_upper_arm"}, "right_upper_arm"), 1);
-  const std::vector<std::string> humanoid3d = {"root",        "neck",           "head",        "right_hip",  "right_knee",
-                                               "right_ankle", "right_shoulder", "right_elbow", "right_wrist"};
+  const std::vector<std::string> humanoid3d = {
+      "root", "neck", "head", "right_hip", "right_knee", "right_ankle", "right_shoulder", "right_elbow", "right_wrist"};
   int joint_idx = 0;
   for (const char* part : {"root", "neck", "head", "right_thigh", "right_shin", "right_foot", "right_upper_arm",
                            "right_forearm", "right_hand"}) {

@@ -17,10 +17,11 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using nlohmann::json;
 
-constexpr size_t kNumValues = 44;                 // of a frame
-constexpr double kSameDuration = 0.01;            // of the mean: durations are written with six digits or more
+constexpr size_t kNumValues = 44;       // of a frame
+constexpr double kSameDuration = 0.01;  // of the mean: durations are written with six digits or more
 constexpr double kLargest = 1e6, kShortest = 1e-5, kLongest = 1e3;  // metres or radians; seconds
 constexpr size_t kMostFrames = 1'000'000;
+constexpr double kSmallestNorm = 0.1;  // of a quaternion: published files have lengths from 0.58 to 1.12
 
 enum class Turns { kNot, kByQuaternion, kByAngle };
 
@@ -77,7 +78,7 @@ Result<Frame> parse_frame(const json& values, const std::string& where) {
       frame.rotations[j] = Eigen::AngleAxisd(numbers[at++], Vector3d::UnitZ());
     } else if (kJoints[j].turns == Turns::kByQuaternion) {
       const Quaterniond q(numbers[at], numbers[at + 1], numbers[at + 2], numbers[at + 3]);
-      if (std::abs(q.norm() - 1) > 0.05) {
+      if (!(q.norm() > kSmallestNorm && q.norm() < 1 / kSmallestNorm)) {
         return error("{}: {}: a quaternion of length {:.3g}", where, kJoints[j].name, q.norm());
       }
       frame.rotations[j] = q.normalized();

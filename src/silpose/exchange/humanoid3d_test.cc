@@ -20,7 +20,8 @@ using testing::HasSubstr;
 
 // One frame as the file has it, standing 0.9 m high; the indices are the file's.
 using Values = std::array<double, 44>;
-constexpr size_t kRoot = 4, kChest = 8, kRightKnee = 20, kRightElbow = 29, kLeftHip = 30, kLeftKnee = 34, kLeftElbow = 43;
+constexpr size_t kRoot = 4, kChest = 8, kRightKnee = 20, kRightElbow = 29, kLeftHip = 30, kLeftKnee = 34,
+                 kLeftElbow = 43;
 
 Values standing(double duration_s = 0.02) {
   Values values{};
@@ -85,9 +86,9 @@ TEST_F(Humanoid3d, BendsKneesBackAndElbowsForth) {
 TEST_F(Humanoid3d, TakesQuaternionsAsWXYZ) {
   Values turned = standing();
   const double half = std::sqrt(0.5);
-  turned[kRoot] = half, turned[kRoot + 2] = half;           // a quarter turn about y: forward is now -z
-  turned[kLeftHip] = half, turned[kLeftHip + 3] = half;     // about z: the thigh points forward
-  turned[kChest] = -half, turned[kChest + 1] = -half;       // about x, the other sign: the chest leans to the right
+  turned[kRoot] = half, turned[kRoot + 2] = half;        // a quarter turn about y: forward is now -z
+  turned[kLeftHip] = half, turned[kLeftHip + 3] = half;  // about z: the thigh points forward
+  turned[kChest] = -half, turned[kChest + 1] = -half;    // about x, the other sign: the chest leans to the right
   const Clip clip = read({turned}).value();
   EXPECT_TRUE((at(clip, "left_knee") - at(clip, "left_hip")).isApprox(Vector3d(0, 0, -0.421546), 1e-5));
   EXPECT_TRUE((at(clip, "neck") - at(clip, "chest")).isApprox(Vector3d(0.223894, 0, 0), 1e-5));
@@ -109,7 +110,7 @@ TEST_F(Humanoid3d, RoundingOfDurationsIsNoReasonToResample) {
 TEST_F(Humanoid3d, NamesWhatIsWrong) {
   const auto message = [&](const std::vector<Values>& frames) { return read(frames).error().message; };
   Values bad = standing();
-  bad[kChest] = 0.5;
+  bad[kChest] = 0.05;
   EXPECT_THAT(message({standing(), bad}), AllOf(HasSubstr(path_.filename().string()), HasSubstr("frame 1: chest")));
   EXPECT_THAT(message({standing(0), standing()}), HasSubstr("frame 0: lasts 0 s"));
   EXPECT_THAT(message({standing(1e-5), standing(1000), standing()}), HasSubstr("frames from"));
