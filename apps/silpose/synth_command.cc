@@ -15,12 +15,12 @@ namespace silpose::app {
 namespace {
 
 struct SynthOptions {
-  std::string out, config, model = "human", motion = "static", size = "640x480", backdrop = "textured";
+  std::string out, config, model = "human", motion = "static", size = "640x480", backdrop = "textured", noise = "none";
   std::vector<std::string> views;
   CameraOptions camera;
   int frames = 0, lead_in = 0;
   double fps = 30;
-  std::optional<double> amplitude_deg, period_s;
+  std::optional<double> amplitude_deg, period_s, noise_iou;
   bool colour = false;
 };
 
@@ -70,11 +70,31 @@ Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions&
   return sequence;
 }
 
+// The masks of each camera that are written in place of the true ones; none without noise.
+Result<std::vector<DegradedMasks>> degrade(const SyntheticSequence& sequence, const SynthOptions& options,
+                                           const CommonOptions& common, Outcome& outcome) {
+  const Result<MaskFault> fault = parse_mask_fault(options.noise);
+  if (!fault) throw UsageError(fmt::format("--noise: {}", fault.error().message));
+  std::vector<DegradedMasks> masks;
+  if (*fault == MaskFault::kNone) return masks;
+  const MaskNoise noise{.fault = *fault, .iou = options.noise_iou.value_or(0.9), .outline = {}, .seed = common.seed};
+  nlohmann::ordered_json iou = nlohmann::ordered_json::array();
+  for (size_t c = 0; c < sequence.cameras.size(); ++c) {
+    Result<DegradedMasks> of_camera = DegradedMasks::create(sequence, static_cast<int>(c), noise);
+    if (!of_camera) return of_camera.failure();
+    iou.push_back(of_camera->mean_iou());
+    masks.push_back(std::move(*of_camera));
+  }
+  outcome.json["noise"] = {{"kind", options.noise}, {"mask_iou", iou}};
+  return masks;
+}
+
 Result<Outcome> run_synth(const CLI::App& app, const SynthOptions& options, const CommonOptions& common,
                           Console& console) {
   if (options.out.empty()) throw UsageError("--out is missing");
   if (!options.camera.file.empty() && !options.views.empty()) throw UsageError("--view: not together with --camera");
   if (options.lead_in > 0 && !options.colour) throw UsageError("--lead-in: needs --colour");
+  if (options.noise_iou && options.noise != "edge") throw UsageError("--noise-iou: needs --noise edge");
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
   if (!directory) return directory.failure();
   Outcome outcome;
@@ -88,7 +108,9 @@ Result<Outcome> run_synth(const CLI::App& app, const SynthOptions& options, cons
     if (!backdrop) throw UsageError(fmt::format("--backdrop: {}", backdrop.error().message));
     colour = ColourOptions{.backdrop = *backdrop, .seed = common.seed};
   }
-  const Result<int> frames = write_sequence(directory->path(), *sequence, colour, &console);
+  const Result<std::vector<DegradedMasks>> masks = degrade(*sequence, options, common, outcome);
+  if (!masks) return masks.failure();
+  const Result<int> frames = write_sequence(directory->path(), *sequence, colour, &console, *masks);
   if (!frames) return frames.failure();
 
   outcome.interrupted = Console::interrupted();
@@ -122,7 +144,8 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
   CLI::App* const app = program.add_subcommand("synth", "Render a sequence with ground truth");
   app->add_option("--out", options->out, "Directory for the sequence");
   add_model_option(*app, options->model);
-  app->add_option("--motion", options->motion, "FILE.bvh, FILE.txt (humanoid3d), static, dof:INDEX, circle, sway or random")
+  app->add_option("--motion", options->motion,
+                  "FILE.bvh, FILE.txt (humanoid3d), static, dof:INDEX, circle, sway or random")
       ->capture_default_str();
   app->add_option("--amplitude-deg", options->amplitude_deg, "How far sway, circle and random go")
       ->check(within(0, 180));
@@ -140,6 +163,13 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
       ->check(CLI::IsMember({"textured", "green"}));
   app->add_option("--lead-in", options->lead_in, "Frames of the video before the subject is there")
       ->check(CLI::Range(0, 100'000));
+  app->add_option("--noise", options->noise,
+                  "Faults of the masks written: none, shadow, edge, limb or hole; poses, joints and video stay true")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"none", "shadow", "edge", "limb", "hole"}));
+  app->add_option("--noise-iou", options->noise_iou,
+                  "With --noise edge: mean intersection over union with the true masks; default 0.9")
+      ->check(within(0.6, 0.99));
   app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
   return {app, [app, options, &common](Console& console) { return run_synth(*app, *options, common, console); },
           &options->config};

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <vector>
 
+#include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/geometry/calibration_file.h"
 #include "silpose/image/image_file.h"
@@ -19,6 +20,7 @@ constexpr int kFramesAtOnce = 8;  // drawn in parallel, then written in order
 // What belongs to one camera while its files are written.
 struct Outputs {
   std::filesystem::path masks;
+  const DegradedMasks* degraded = nullptr;  // nothing: the true masks
   std::optional<ColourScene> scene;
   std::optional<VideoWriter> video;
 };
@@ -59,8 +61,9 @@ Result<void> write_frames(const SyntheticSequence& sequence, int camera_idx, Out
   parallel_for(count, 1, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
       const int frame = begin + static_cast<int>(i);
-      const Result<void> written =
-          write_mask(output.masks / fmt::format("{:06}.png", frame), true_mask(sequence, camera_idx, frame));
+      const Mask mask =
+          output.degraded != nullptr ? output.degraded->draw(frame) : true_mask(sequence, camera_idx, frame);
+      const Result<void> written = write_mask(output.masks / fmt::format("{:06}.png", frame), mask);
       if (!written) failures[i] = written.error();
       if (output.scene) pictures[i] = output.scene->draw(frame);
     }
@@ -111,10 +114,14 @@ JointTable true_joints(const SyntheticSequence& sequence, int num_frames) {
 }
 
 Result<int> write_sequence(const std::filesystem::path& directory, const SyntheticSequence& sequence,
-                           const std::optional<ColourOptions>& colour, ProgressSink* progress) {
+                           const std::optional<ColourOptions>& colour, ProgressSink* progress,
+                           std::span<const DegradedMasks> masks) {
+  check(masks.empty() || masks.size() == sequence.cameras.size(), "write_sequence: masks of {} cameras of {}",
+        masks.size(), sequence.cameras.size());
   if (const Result<void> made = make_directory(directory); !made) return made.failure();
   Result<std::vector<Outputs>> outputs = open_outputs(directory, sequence, colour);
   if (!outputs) return outputs.failure();
+  for (size_t c = 0; c < masks.size(); ++c) (*outputs)[c].degraded = &masks[c];
   if (const auto written = write_cameras(directory / "camera.toml", sequence.cameras); !written) {
     return written.failure();
   }

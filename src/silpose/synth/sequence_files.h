@@ -5,11 +5,13 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 
 #include "silpose/base/progress.h"
 #include "silpose/base/result.h"
 #include "silpose/exchange/tables.h"
 #include "silpose/synth/colour_scene.h"
+#include "silpose/synth/degraded_mask.h"
 #include "silpose/synth/scene.h"
 
 namespace silpose {
@@ -17,9 +19,11 @@ namespace silpose {
 // Writes into `directory`, which is made where it is missing; whoever calls gives it its final name afterwards. Frame
 // numbers and times count from the video's first image; frames of the lead-in have an empty mask and no rows.
 // Returns the number of frames written: fewer than there are when `progress` asked to stop, and the files tell of
-// those. Errors: anything that cannot be written.
+// those. `masks`, one a camera, are written in place of the true ones; the tables stay true.
+// Errors: anything that cannot be written; throws std::invalid_argument for another number of `masks` than cameras.
 Result<int> write_sequence(const std::filesystem::path& directory, const SyntheticSequence& sequence,
-                           const std::optional<ColourOptions>& colour = std::nullopt, ProgressSink* progress = nullptr);
+                           const std::optional<ColourOptions>& colour = std::nullopt, ProgressSink* progress = nullptr,
+                           std::span<const DegradedMasks> masks = {});
 
 // The truth of frames [0, num_frames) as plain values. Joints: landmarks (body/body_model.h), pixels of the first
 // camera.

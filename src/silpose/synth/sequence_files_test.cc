@@ -32,6 +32,24 @@ class StopAfter : public ProgressSink {
   int64_t frames_;
 };
 
+TEST_F(SequenceFiles, DegradedMasksLeaveTheTablesTrue) {
+  const SyntheticSequence sequence = make_test_scene(6, 1);
+  const MaskNoise noise{.fault = MaskFault::kEdge, .iou = 0.85, .outline = {}, .seed = 1};
+  const std::vector<DegradedMasks> masks = {DegradedMasks::create(sequence, 0, noise).value()};
+  ASSERT_EQ(write_sequence(directory_, sequence, std::nullopt, nullptr, masks).value(), 7);
+  double sum = 0;
+  for (int frame = 1; frame < 7; ++frame) {
+    const Mask written = read_mask(directory_ / "masks" / fmt::format("{:06}.png", frame)).value();
+    EXPECT_EQ(written, masks[0].draw(frame));
+    sum += intersection_over_union(written, true_mask(sequence, 0, frame));
+  }
+  EXPECT_NEAR(sum / 6, 0.85, 0.01);
+  const std::vector<DegradedMasks> two = {masks[0], masks[0]};
+  const PoseTable poses = read_poses(directory_ / "poses.csv", sequence.body->skeleton).value();
+  for (size_t d = 0; d < 8; ++d) EXPECT_NEAR(poses.rows[5].values[d], sequence.poses[5][d], 1e-6);
+  EXPECT_THROW((void)write_sequence(directory_, sequence, std::nullopt, nullptr, two), std::invalid_argument);
+}
+
 TEST_F(SequenceFiles, ReadBackAsTheyWere) {
   const SyntheticSequence sequence = make_test_scene(10, 3);
   ASSERT_EQ(write_sequence(directory_, sequence, ColourOptions{}).value(), 13);
