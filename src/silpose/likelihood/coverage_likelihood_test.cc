@@ -131,7 +131,7 @@ TEST_P(CoverageDerivative, AgreesWithFiniteDifferences) {
       const auto i = static_cast<Eigen::Index>(d);
       // What one standard deviation of this DOF alone would change: the natural scale of its slope.
       const double scale = std::sqrt(equations.hessian(i, i) * equations.energy);
-      EXPECT_NEAR(equations.gradient[i], slope, 0.03 * scale + 1e-9) << body->skeleton.dofs()[d].name;
+      EXPECT_NEAR(equations.gradient[i], slope, 0.05 * scale + 1e-9) << body->skeleton.dofs()[d].name;
     }
   }
 }

@@ -25,6 +25,15 @@ constexpr NoiseRow kHumanNoise[] = {
     {"upper_arm_rz", 4}, {"forearm_rx", 5},  {"forearm_ry", 2},  {"hand_rx", 3},      {"hand_rz", 3},
 };
 
+// What walking, running and dancing joints do to their own velocity in 1/30 s.
+constexpr NoiseRow kHumanAcceleration[] = {
+    {"root_tx", 0.008},  {"root_ty", 0.008}, {"root_tz", 0.008}, {"root_rx", 1},      {"root_ry", 1},
+    {"root_rz", 1},      {"abdomen_rx", 0.5}, {"thorax_rx", 0.75}, {"thorax_ry", 1},   {"thorax_rz", 0.75},
+    {"head_rx", 1},      {"head_ry", 1},     {"head_rz", 1},     {"thigh_rx", 2},     {"thigh_ry", 1.5},
+    {"thigh_rz", 1.5},   {"shin_rx", 3.5},   {"foot_rx", 3},     {"upper_arm_rx", 2}, {"upper_arm_ry", 1.5},
+    {"upper_arm_rz", 2}, {"forearm_rx", 2},  {"forearm_ry", 1.5}, {"hand_rx", 1.5},   {"hand_rz", 1.5},
+};
+
 std::string_view without_side(std::string_view name) {
   for (const std::string_view side : {"right_", "left_"}) {
     if (name.starts_with(side)) return name.substr(side.size());
@@ -42,6 +51,15 @@ double typical_deviation(const Dof& dof) {
   return std::clamp(0.03 * to_degrees(dof.upper - dof.lower), 1.0, 5.0);
 }
 
+// In degrees or metres.
+double typical_acceleration(const Dof& dof) {
+  for (const NoiseRow& row : kHumanAcceleration) {
+    if (row.dof == without_side(dof.name)) return row.deviation;
+  }
+  if (dof.is_translation) return 0.008;
+  return 0.5 * typical_deviation(dof);
+}
+
 }  // namespace
 
 std::vector<double> noise_deviation(const Skeleton& skeleton, double sigma_deg) {
@@ -49,6 +67,15 @@ std::vector<double> noise_deviation(const Skeleton& skeleton, double sigma_deg) 
   std::vector<double> deviation;
   for (const Dof& dof : skeleton.dofs()) {
     const double typical = typical_deviation(dof) * sigma_deg / kTypicalSigmaDeg;
+    deviation.push_back(dof.is_translation ? typical : to_radians(typical));
+  }
+  return deviation;
+}
+
+std::vector<double> acceleration_deviation(const Skeleton& skeleton) {
+  std::vector<double> deviation;
+  for (const Dof& dof : skeleton.dofs()) {
+    const double typical = typical_acceleration(dof);
     deviation.push_back(dof.is_translation ? typical : to_radians(typical));
   }
   return deviation;

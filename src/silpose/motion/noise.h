@@ -17,4 +17,8 @@ inline constexpr double kTypicalSigmaDeg = 4;         // the table's own deviati
 // Errors: throws std::invalid_argument unless sigma_deg is positive and finite.
 [[nodiscard]] std::vector<double> noise_deviation(const Skeleton& skeleton, double sigma_deg = kTypicalSigmaDeg);
 
+// Deviation [D] of the change of velocity over kNoiseInterval_s, times that interval: by how far a DOF ends up from where
+// constant velocity would take it. Radians and metres.
+[[nodiscard]] std::vector<double> acceleration_deviation(const Skeleton& skeleton);
+
 }  // namespace silpose

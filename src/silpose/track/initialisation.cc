@@ -4,17 +4,21 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
-#include "silpose/filter/adaptive_search.h"
+#include "silpose/render/silhouette.h"
+#include "silpose/shape/normalised_silhouette.h"
 #include "silpose/track/limbs.h"
-#include "silpose/track/pose_estimate.h"
 
 namespace silpose {
 namespace {
+
+constexpr double kPlacingResolution = 96;  // raster pixels along the longer side of the silhouette
+// All candidates are fitted at these; the best of each heading at the finer ones.
+constexpr FitStage kCoarseStages[] = {{Blur::k32, 3}, {Blur::k16, 4}};
+constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}};
 
 struct Blob {
   double area = 0;
@@ -40,71 +44,26 @@ Eigen::Vector2d image_from_raster(const Window& window, const Eigen::Vector2d& x
   return {window.x0 + x.x() / window.scale_x, window.y0 + x.y() / window.scale_y};
 }
 
-// How far a pose may be off a candidate: the deviation of the prior about it, and the first step of descent. [D]
-std::vector<double> reach(const Skeleton& skeleton) {
-  std::vector<double> deviation;
-  for (const Dof& dof : skeleton.dofs()) {
-    deviation.push_back(dof.is_translation ? 0.1 : dof.is_periodic ? to_radians(15) : 0.12 * (dof.upper - dof.lower));
+// Loosely about a candidate: joints by half their range, the trunk's tilt by 20 degrees; where the body is, and which
+// way it faces, is free.
+PosePrior prior_about(const Skeleton& skeleton, const Eigen::VectorXd& pose) {
+  PosePrior prior{pose, Eigen::MatrixXd::Zero(pose.size(), pose.size())};
+  for (Eigen::Index d = 0; d < pose.size(); ++d) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    const bool vertical = dof.joint_idx == 0 && std::abs(dof.axis.y()) > 0.5;
+    double deviation = dof.is_translation ? 0 : dof.joint_idx == 0 ? to_radians(20) : 0.5 * (dof.upper - dof.lower);
+    if (dof.joint_idx == 0 && !dof.is_translation && vertical) deviation = 0;
+    prior.information(d, d) = deviation > 0 ? 1 / (deviation * deviation) : 1e-6;
   }
-  return deviation;
-}
-
-StateBatch one_state(std::span<const double> pose) {
-  return Eigen::Map<const Eigen::RowVectorXd>(pose.data(), std::ssize(pose));
-}
-
-// Gradient ascent in which every DOF has a step of its own that grows while the gradient keeps its sign and shrinks
-// when it turns: the likelihood's slopes differ by orders of magnitude between DOF. Source: igel2003 (iRprop-).
-StartingPose descend(const SilhouetteLikelihood& likelihood, const Evidence& evidence, std::span<const double> start,
-                     int num_iterations) {
-  const Skeleton& skeleton = likelihood.body().skeleton;
-  const std::vector<double> widest = reach(skeleton);
-  const size_t D = widest.size();
-  std::vector<double> pose(start.begin(), start.end()), steps(D), last_gradient(D, 0), probe(D);
-  for (size_t d = 0; d < D; ++d) steps[d] = 0.3 * widest[d];
-  StartingPose best{pose, -std::numeric_limits<double>::infinity()};
-  for (int iteration = 0; iteration < num_iterations; ++iteration) {
-    for (size_t d = 0; d < D; ++d) probe[d] = std::max(0.5 * steps[d], 0.05 * widest[d]);
-    const auto derivative = likelihood.derivative(evidence, pose, probe);
-    if (derivative.log_likelihood > best.log_likelihood) best = {pose, derivative.log_likelihood};
-    for (size_t d = 0; d < D; ++d) {
-      double gradient = derivative.gradient[static_cast<Eigen::Index>(d)];
-      if (gradient * last_gradient[d] > 0) steps[d] = std::min(1.2 * steps[d], widest[d]);
-      if (gradient * last_gradient[d] < 0) {
-        steps[d] = std::max(0.5 * steps[d], 0.01 * widest[d]);
-        gradient = 0;
-      }
-      pose[d] += gradient > 0 ? steps[d] : gradient < 0 ? -steps[d] : 0;
-      last_gradient[d] = gradient;
-    }
-    skeleton.clamp(pose);
-  }
-  return best;
-}
-
-// What descent along single DOF leaves: a search that learns how they trade off.
-StartingPose polish(const SilhouetteLikelihood& likelihood, const Evidence& evidence, const StartingPose& start,
-                    const InitialisationOptions& options, uint64_t stream) {
-  const Skeleton& skeleton = likelihood.body().skeleton;
-  std::vector<double> deviation = reach(skeleton);
-  for (double& width : deviation) width *= 0.5;
-  FilterReport report;
-  const ParticleSet particles = adaptive_search(
-      {start.pose, deviation},
-      {.num_particles = options.num_particles, .num_layers = options.num_layers, .seed = options.seed}, stream,
-      [&](std::span<double> pose) { skeleton.clamp(pose); },
-      [&](const StateBatch& states, std::span<double> out) { likelihood.log_likelihood(evidence, states, out); }, report);
-  StartingPose found{pose_estimate(skeleton, particles, Estimate::kMean, deviation), 0};
-  likelihood.log_likelihood(evidence, one_state(found.pose), {&found.log_likelihood, 1});
-  return found.log_likelihood > start.log_likelihood ? found : start;
+  return prior;
 }
 
 // Which of eight directions a pose faces, for a skeleton whose root turns about the vertical; else 0.
-int heading_sector(const Skeleton& skeleton, std::span<const double> pose) {
+int heading_sector(const Skeleton& skeleton, const Eigen::VectorXd& pose) {
   for (int d = 0; d < skeleton.num_dofs(); ++d) {
     const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
     if (dof.joint_idx == 0 && dof.is_periodic && dof.axis.y() > 0.5) {
-      return static_cast<int>(std::lround(wrap_angle(pose[static_cast<size_t>(d)]) / (kPi / 4)) + 8) % 8;
+      return static_cast<int>(std::lround(wrap_angle(pose[d]) / (kPi / 4)) + 8) % 8;
     }
   }
   return 0;
@@ -117,30 +76,44 @@ double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::spa
   return (root.rotation * Eigen::Vector3d::UnitZ()).dot((camera.centre_in_world() - root.translation).normalized());
 }
 
-template <class T, class Value>
-void sort_best_first(std::vector<T>& items, Value value) {
-  std::stable_sort(items.begin(), items.end(), [&](const T& a, const T& b) { return value(a) > value(b); });
+// How far the joint or end point that is furthest off is off.
+double landmark_distance(const BodyModel& body, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+  const auto n = static_cast<size_t>(a.size());
+  const auto x = landmark_positions(body, {a.data(), n}), y = landmark_positions(body, {b.data(), n});
+  double furthest = 0;
+  for (size_t i = 0; i < x.size(); ++i) furthest = std::max(furthest, (x[i] - y[i]).norm());
+  return furthest;
 }
 
-// The first `count` items, in order, of each of eight sectors.
-template <class T, class Sector>
-void keep_per_sector(std::vector<T>& items, int count, Sector sector) {
-  std::array<int, 8> taken{};
-  std::erase_if(items, [&](const T& item) { return ++taken[static_cast<size_t>(sector(item))] > count; });
+struct Candidate {
+  PosePrior prior;
+  PoseFit fit;
+};
+
+void fit_all(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, std::span<const FitStage> stages,
+             std::vector<Candidate>& candidates) {
+  parallel_for(candidates.size(), 1, [&](size_t begin, size_t end) {
+    CoverageLikelihood::Scratch scratch(likelihood);
+    for (size_t i = begin; i < end; ++i) {
+      Candidate& c = candidates[i];
+      c.fit = fit_pose(likelihood, evidence, c.prior, c.fit.pose, stages, {}, scratch);
+    }
+  });
+}
+
+void sort_best_first(std::vector<Candidate>& candidates) {
+  std::ranges::stable_sort(candidates, {}, [](const Candidate& c) { return c.fit.cost(); });
 }
 
 }  // namespace
 
-StateBatch place_on_mask(const SilhouetteLikelihood& likelihood, const Evidence& evidence,
+StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
                          const StateBatch& candidates) {
-  const auto seen =
-      std::find_if(evidence.views.begin(), evidence.views.end(), [](const auto& view) { return view.trust > 0; });
-  check(seen != evidence.views.end(), "place_on_mask: no camera has a say");
-  const BatchRenderer& renderer = *likelihood.renderers()[static_cast<size_t>(seen - evidence.views.begin())];
-  const BodyModel& body = renderer.body();
-  const PinholeCamera& camera = renderer.camera();
-  const Window& window = seen->window;
-  const Blob observed = measure(seen->observed);
+  check(!observation.box.empty(), "place_on_mask: nothing was found");
+  const double longer_side = std::max(observation.box.width, observation.box.height);
+  const Window window = window_of_image(camera.width, camera.height, std::min(1.0, kPlacingResolution / longer_side));
+  const Blob observed = measure(resample_mask(observation.mask, window));
+  if (observed.area < 1) return candidates;
   const Eigen::Vector2d target = image_from_raster(window, observed.centroid);
   const EdgeTopology topology(body.rest.faces);
 
@@ -171,46 +144,71 @@ StateBatch place_on_mask(const SilhouetteLikelihood& likelihood, const Evidence&
   return placed;
 }
 
-std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, const Evidence& evidence,
+std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::span<const Observation> observations,
                                      const StateBatch& candidates, const InitialisationOptions& options) {
   check(candidates.rows() > 0, "initialise: no candidates");
-  check(likelihood.options().comparison == Comparison::kImage, "initialise: needs a likelihood on the whole image");
-  const StateBatch placed = place_on_mask(likelihood, evidence, candidates);
-  std::vector<double> values(static_cast<size_t>(placed.rows()));
-  likelihood.log_likelihood(evidence, placed, values);
-  std::vector<size_t> order(values.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  sort_best_first(order, [&](size_t k) { return values[k]; });
-  const Skeleton& skeleton = likelihood.body().skeleton;
-  const auto pose_of = [&](size_t k) {
-    return std::span<const double>(placed.row(static_cast<Eigen::Index>(k)).data(), static_cast<size_t>(placed.cols()));
-  };
-  keep_per_sector(order, options.num_descended_per_heading,
-                  [&](size_t k) { return heading_sector(skeleton, pose_of(k)); });
+  const BodyModel& body = likelihood.body();
+  const Skeleton& skeleton = body.skeleton;
+  const CoverageEvidence evidence = likelihood.prepare(observations);
+  size_t seen = 0;
+  while (seen < observations.size() && evidence.views[seen].trust <= 0) ++seen;
+  check(seen < observations.size(), "initialise: no camera has a say");
+  const PinholeCamera& camera = likelihood.cameras()[seen];
 
-  std::vector<StartingPose> starts(order.size());
-  parallel_for(order.size(), 1, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      starts[i] = descend(likelihood, evidence, pose_of(order[i]), options.num_iterations);
-    }
-  });
-  sort_best_first(starts, [](const StartingPose& start) { return start.log_likelihood; });
-  keep_per_sector(starts, 1, [&](const StartingPose& start) { return heading_sector(skeleton, start.pose); });
-  starts.resize(std::min(starts.size(), static_cast<size_t>(options.num_polished)));
-  for (size_t i = 0; i < starts.size(); ++i) starts[i] = polish(likelihood, evidence, starts[i], options, i);
-  const PinholeCamera& camera = likelihood.renderers().front()->camera();
-  const auto with_bonus = [&](const StartingPose& start) {
-    return start.log_likelihood + options.facing_bonus * faces_camera(likelihood.body(), camera, start.pose);
-  };
-  sort_best_first(starts, with_bonus);
-  uint64_t stream = starts.size();
-  for (std::vector<double>& variant : exchanged_limbs(skeleton, starts.front().pose)) {
-    StartingPose start{std::move(variant), 0};
-    likelihood.log_likelihood(evidence, one_state(start.pose), {&start.log_likelihood, 1});
-    starts.push_back(polish(likelihood, evidence, start, options, stream++));
+  const StateBatch placed = place_on_mask(body, camera, observations[seen], candidates);
+  std::vector<Candidate> starts(static_cast<size_t>(placed.rows()));
+  for (size_t k = 0; k < starts.size(); ++k) {
+    starts[k].fit.pose = placed.row(static_cast<Eigen::Index>(k)).head(skeleton.num_dofs());
+    starts[k].prior = prior_about(skeleton, starts[k].fit.pose);
   }
-  sort_best_first(starts, with_bonus);
-  return starts;
+  fit_all(likelihood, evidence, kCoarseStages, starts);
+  sort_best_first(starts);
+  std::array<int, 8> taken{};
+  std::erase_if(starts, [&](const Candidate& c) {
+    return ++taken[static_cast<size_t>(heading_sector(skeleton, c.fit.pose))] > options.num_per_heading;
+  });
+  fit_all(likelihood, evidence, kFineStages, starts);
+  sort_best_first(starts);
+
+  // What looks almost the same: limbs exchanged or reflected in depth, the whole body mirrored in depth.
+  std::vector<Candidate> variants;
+  const std::vector<Limb> limbs = limbs_of(skeleton);
+  const auto add = [&](std::span<const double> pose) {
+    if (pose.empty()) return;
+    Candidate variant;
+    variant.fit.pose = Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose));
+    variant.prior = prior_about(skeleton, variant.fit.pose);
+    variants.push_back(std::move(variant));
+  };
+  for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
+    const std::span<const double> pose(starts[i].fit.pose.data(), static_cast<size_t>(starts[i].fit.pose.size()));
+    const std::vector<double> mirrored = mirrored_in_depth(skeleton, pose, camera.centre_in_world());
+    add(mirrored);
+    for (const auto& variant : exchanged_limbs(skeleton, pose)) add(variant);
+    for (const Limb& limb : limbs) {
+      for (const auto& variant : reflected_limb(body, limb, pose, camera.centre_in_world())) add(variant);
+    }
+  }
+  fit_all(likelihood, evidence, kFineStages, variants);
+  for (Candidate& variant : variants) starts.push_back(std::move(variant));
+
+  const auto log_likelihood = [&](const Candidate& c) {
+    return -0.5 * c.fit.cost() + options.facing_bonus * faces_camera(body, camera, {c.fit.pose.data(), static_cast<size_t>(c.fit.pose.size())});
+  };
+  std::ranges::stable_sort(starts, std::greater<>{}, log_likelihood);
+  std::vector<StartingPose> best;
+  std::vector<const Candidate*> kept;
+  for (const Candidate& start : starts) {
+    if (std::ssize(best) == options.num_starts) break;
+    if (std::ranges::any_of(kept, [&](const Candidate* other) {
+          return landmark_distance(body, start.fit.pose, other->fit.pose) < options.merge_distance;
+        })) {
+      continue;
+    }
+    kept.push_back(&start);
+    best.push_back({{start.fit.pose.begin(), start.fit.pose.end()}, log_likelihood(start)});
+  }
+  return best;
 }
 
 }  // namespace silpose

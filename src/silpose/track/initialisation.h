@@ -1,41 +1,39 @@
-// Initialisation: from one mask and a set of common poses to ranked starting poses, by placing each on the mask and
-// climbing the likelihood from there: by its derivative first, then by an adaptive search about the best.
+// Initialisation: from one instant's masks and a set of common poses to ranked starting poses. Each candidate is placed
+// on the mask and fitted from wide blur to narrow; what looks almost the same as the best is fitted, too.
 // Source: cormier2019 sect. 2.4.1 (gradient descent from known common poses).
-// Threads: a function without state; uses all cores.
+// Threads: functions without state; all cores are used, and the result is the same on any number.
 #pragma once
 
 #include <span>
 #include <vector>
 
 #include "silpose/filter/state_batch.h"
-#include "silpose/likelihood/silhouette_likelihood.h"
+#include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/pose_fit.h"
 
 namespace silpose {
 
 struct InitialisationOptions {
-  int num_descended_per_heading = 2;  // the best of the placed candidates that face each of eight directions
-  int num_iterations = 25;            // of descent
-  int num_polished = 4;               // the best of those, each facing another direction, that are searched further
-  int num_particles = 200;            // of that search, a layer
-  int num_layers = 20;
+  int num_per_heading = 3;  // of eight: candidates that are fitted finely
+  int num_varied = 4;       // the best, whose variants are fitted
+  int num_starts = 8;
+  double merge_distance = 0.1;  // metres: starts whose every joint is nearer are one
   double facing_bonus = 1;  // log-likelihood that facing the camera is worth; as much is lost by facing away
-  uint64_t seed = 1;
 };
 
 struct StartingPose {
-  std::vector<double> pose;   // [D]
-  double log_likelihood = 0;
+  std::vector<double> pose;   // [D] within the limits
+  double log_likelihood = 0;  // with the bonus
 };
 
-// Starting poses, best first: the polished ones, and the best of them with limbs exchanged between left and right and
-// polished again. Their log-likelihood is without the bonus. Shapes: candidates
-// [K, D]; their root translation is replaced. REQUIRES: evidence in which some camera has a say, from an
-// image-comparing likelihood.
-std::vector<StartingPose> initialise(const SilhouetteLikelihood& likelihood, const Evidence& evidence,
+// Starting poses, best first; at least one. Shapes: one observation a camera; candidates [K, D], whose root translation
+// is replaced. REQUIRES: an observation in which something was found.
+std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::span<const Observation> observations,
                                      const StateBatch& candidates, const InitialisationOptions& options = {});
 
-// Moves each candidate's root so that, in the first camera that has a say, its silhouette has the area and the
-// centroid of the observed one. Shapes: [K, D] -> [K, D].
-StateBatch place_on_mask(const SilhouetteLikelihood& likelihood, const Evidence& evidence, const StateBatch& candidates);
+// Moves each candidate's root so that its silhouette has the area and the centroid of the observed one.
+// Shapes: [K, D] -> [K, D]. REQUIRES: something was found.
+StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
+                         const StateBatch& candidates);
 
 }  // namespace silpose

@@ -1,70 +1,246 @@
 #include "silpose/track/limbs.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
-#include <map>
+#include <cmath>
 #include <string>
 #include <utility>
 
 namespace silpose {
+namespace {
 
-std::vector<std::vector<int>> limb_blocks(const Skeleton& skeleton) {
+// Joint -> index of its limb, or -1: the trunk.
+std::vector<int> limb_of_joint(const Skeleton& skeleton, std::vector<Limb>& limbs) {
   const auto joints = skeleton.joints();
-  const int num_joints = skeleton.num_joints();
   std::vector<int> num_children(joints.size(), 0);
   for (const Joint& joint : joints) {
     if (joint.parent_idx >= 0) ++num_children[joint.parent_idx];
   }
   // Parents come first, so one pass from the end tells whether a subtree branches.
   std::vector<bool> branches(joints.size(), false);
-  for (int j = num_joints - 1; j >= 0; --j) {
+  for (size_t j = joints.size(); j-- > 0;) {
     if (num_children[j] > 1) branches[j] = true;
     if (branches[j] && joints[j].parent_idx >= 0) branches[joints[j].parent_idx] = true;
   }
-  // The limb of a joint is its topmost ancestor below which nothing branches; -1 is the trunk.
   std::vector<int> limb_of(joints.size(), -1);
-  std::map<int, std::vector<int>> dofs_of;
-  for (int j = 0; j < num_joints; ++j) {
-    if (!branches[j]) {
-      const int parent = joints[j].parent_idx;
-      limb_of[j] = parent >= 0 && limb_of[parent] >= 0 ? limb_of[parent] : j;
+  for (size_t j = 0; j < joints.size(); ++j) {
+    if (branches[j]) continue;
+    const int parent = joints[j].parent_idx;
+    if (parent >= 0 && limb_of[parent] >= 0) {
+      limb_of[j] = limb_of[parent];
+    } else {
+      limb_of[j] = static_cast<int>(limbs.size());
+      limbs.emplace_back();
     }
+    limbs[limb_of[j]].joints.push_back(static_cast<int>(j));
   }
-  for (int d = 0; d < skeleton.num_dofs(); ++d) dofs_of[limb_of[skeleton.dofs()[d].joint_idx]].push_back(d);
+  for (int d = 0; d < skeleton.num_dofs(); ++d) {
+    const int limb = limb_of[skeleton.dofs()[static_cast<size_t>(d)].joint_idx];
+    if (limb >= 0) limbs[limb].dofs.push_back(d);
+  }
+  return limb_of;
+}
 
-  std::vector<std::vector<int>> blocks;
-  for (auto& [limb, dofs] : dofs_of) {
-    if (limb >= 0) blocks.push_back(std::move(dofs));
+std::string_view name_without_side(std::string_view name) {
+  return name.starts_with("right_") ? name.substr(6) : name.starts_with("left_") ? name.substr(5) : name;
+}
+
+// Ends of the limb's segments, from its first joint that turns: joint centres, then the end point of the last joint.
+struct LimbPoint {
+  int joint_idx;
+  Eigen::Vector3d offset;  // in the joint
+};
+
+std::vector<LimbPoint> limb_points(const BodyModel& body, const Limb& limb) {
+  std::vector<LimbPoint> points;
+  for (const int j : limb.joints) {
+    const Joint& joint = body.skeleton.joints()[static_cast<size_t>(j)];
+    if (points.empty() && joint.dof_indices.empty()) continue;
+    points.push_back({j, Eigen::Vector3d::Zero()});
   }
-  if (dofs_of.contains(-1)) blocks.push_back(std::move(dofs_of[-1]));
+  if (points.empty()) return points;
+  const int last_joint = limb.joints.back();
+  for (const BodyModel::EndPoint& end_point : body.end_points) {
+    if (end_point.joint_idx != last_joint) continue;
+    points.push_back({end_point.joint_idx, end_point.offset_in_joint});
+    break;
+  }
+  return points;
+}
+
+// The limb's DOF that bring its points nearest to `targets`, starting from `pose`; the largest distance left.
+double reach_for(const Skeleton& skeleton, const Limb& limb, std::span<const LimbPoint> points,
+                 std::span<const Eigen::Vector3d> targets, std::vector<double>& pose) {
+  constexpr int kIterations = 15;
+  constexpr double kHold = 1e-4;  // m^2 / rad^2: keeps twists that no point shows where they are
+  const auto num_dofs = static_cast<Eigen::Index>(limb.dofs.size());
+  double largest = 0;
+  for (int iteration = 0; iteration <= kIterations; ++iteration) {
+    const auto world_from_joint = skeleton.forward_kinematics(pose);
+    Eigen::MatrixXd normal = kHold * Eigen::MatrixXd::Identity(num_dofs, num_dofs);
+    Eigen::VectorXd right = Eigen::VectorXd::Zero(num_dofs);
+    largest = 0;
+    for (size_t i = 1; i < points.size(); ++i) {
+      const Eigen::Vector3d x = world_from_joint[static_cast<size_t>(points[i].joint_idx)] * points[i].offset;
+      const Eigen::Vector3d off = targets[i] - x;
+      largest = std::max(largest, off.norm());
+      const Eigen::Matrix3Xd all = skeleton.point_jacobian(pose, world_from_joint, points[i].joint_idx, x);
+      const Eigen::Matrix3Xd jacobian = all(Eigen::all, limb.dofs);
+      normal += jacobian.transpose() * jacobian;
+      right += jacobian.transpose() * off;
+    }
+    if (iteration == kIterations || largest < 0.005) break;
+    Eigen::VectorXd step = normal.ldlt().solve(right);
+    const double longest = step.cwiseAbs().maxCoeff();
+    if (longest > 0.7) step *= 0.7 / longest;
+    for (Eigen::Index i = 0; i < num_dofs; ++i) pose[static_cast<size_t>(limb.dofs[static_cast<size_t>(i)])] += step[i];
+    skeleton.clamp(pose);
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::vector<Limb> limbs_of(const Skeleton& skeleton) {
+  std::vector<Limb> limbs;
+  limb_of_joint(skeleton, limbs);
+  std::erase_if(limbs, [](const Limb& limb) { return limb.dofs.empty(); });
+  return limbs;
+}
+
+std::vector<std::vector<int>> limb_blocks(const Skeleton& skeleton) {
+  std::vector<std::vector<int>> blocks;
+  std::vector<bool> in_limb(skeleton.dofs().size(), false);
+  for (Limb& limb : limbs_of(skeleton)) {
+    for (const int d : limb.dofs) in_limb[static_cast<size_t>(d)] = true;
+    blocks.push_back(std::move(limb.dofs));
+  }
+  std::vector<int> trunk;
+  for (int d = 0; d < skeleton.num_dofs(); ++d) {
+    if (!in_limb[static_cast<size_t>(d)]) trunk.push_back(d);
+  }
+  if (!trunk.empty()) blocks.push_back(std::move(trunk));
   return blocks;
 }
 
-std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose) {
-  const auto name_without_side = [&](int d) {
-    const std::string& name = skeleton.dofs()[static_cast<size_t>(d)].name;
-    return name.starts_with("right_") ? name.substr(6) : name.starts_with("left_") ? name.substr(5) : name;
-  };
-  const auto alike = [&](const std::vector<int>& a, const std::vector<int>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                      [&](int i, int j) { return name_without_side(i) == name_without_side(j); });
-  };
-  const auto limbs = limb_blocks(skeleton);
-  std::vector<std::vector<double>> variants;
-  std::vector<double> all(pose.begin(), pose.end());
+std::vector<std::pair<size_t, size_t>> alike_limbs(const Skeleton& skeleton, std::span<const Limb> limbs) {
+  const auto name = [&](int d) { return name_without_side(skeleton.dofs()[static_cast<size_t>(d)].name); };
+  std::vector<std::pair<size_t, size_t>> pairs;
   for (size_t i = 0; i < limbs.size(); ++i) {
     for (size_t j = i + 1; j < limbs.size(); ++j) {
-      if (!alike(limbs[i], limbs[j])) continue;
-      std::vector<double> one(pose.begin(), pose.end());
-      for (size_t k = 0; k < limbs[i].size(); ++k) {
-        const auto a = static_cast<size_t>(limbs[i][k]), b = static_cast<size_t>(limbs[j][k]);
-        std::swap(one[a], one[b]);
-        std::swap(all[a], all[b]);
+      const auto &a = limbs[i].dofs, &b = limbs[j].dofs;
+      if (std::equal(a.begin(), a.end(), b.begin(), b.end(), [&](int x, int y) { return name(x) == name(y); })) {
+        pairs.emplace_back(i, j);
       }
-      variants.push_back(std::move(one));
     }
+  }
+  return pairs;
+}
+
+namespace {
+
+void exchange(std::span<double> pose, const Limb& a, const Limb& b) {
+  for (size_t k = 0; k < a.dofs.size(); ++k) {
+    std::swap(pose[static_cast<size_t>(a.dofs[k])], pose[static_cast<size_t>(b.dofs[k])]);
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose) {
+  const std::vector<Limb> limbs = limbs_of(skeleton);
+  std::vector<std::vector<double>> variants;
+  std::vector<double> all(pose.begin(), pose.end());
+  for (const auto& [a, b] : alike_limbs(skeleton, limbs)) {
+    std::vector<double> one(pose.begin(), pose.end());
+    exchange(one, limbs[a], limbs[b]);
+    exchange(all, limbs[a], limbs[b]);
+    variants.push_back(std::move(one));
   }
   if (variants.size() > 1) variants.push_back(std::move(all));
   return variants;
+}
+
+std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Limb& limb, std::span<const double> pose,
+                                                const Eigen::Vector3d& eye) {
+  constexpr double kReached = 0.05;  // metres
+  std::vector<std::vector<double>> variants;
+  const std::vector<LimbPoint> points = limb_points(body, limb);
+  if (points.size() < 2) return variants;
+  const auto world_from_joint = body.skeleton.forward_kinematics(pose);
+  std::vector<Eigen::Vector3d> x;
+  for (const LimbPoint& point : points) x.push_back(world_from_joint[static_cast<size_t>(point.joint_idx)] * point.offset);
+  const Eigen::Vector3d ray = (x.front() - eye).normalized();
+  const size_t num_segments = points.size() - 1;
+  const auto add_reflection = [&](size_t first, size_t last) {
+    std::vector<Eigen::Vector3d> targets = x;
+    double moved = 0;
+    for (size_t s = 0; s < num_segments; ++s) {
+      Eigen::Vector3d segment = x[s + 1] - x[s];
+      if (s >= first && s < last) segment -= 2 * segment.dot(ray) * ray;
+      targets[s + 1] = targets[s] + segment;
+      moved = std::max(moved, (targets[s + 1] - x[s + 1]).norm());
+    }
+    if (moved < kReached) return;
+    std::vector<double> variant(pose.begin(), pose.end());
+    if (reach_for(body.skeleton, limb, points, targets, variant) < kReached) variants.push_back(std::move(variant));
+  };
+  add_reflection(0, 1);
+  if (num_segments > 1) {
+    add_reflection(1, num_segments);
+    add_reflection(0, num_segments);
+  }
+  return variants;
+}
+
+std::vector<double> random_limb(const Skeleton& skeleton, const Limb& limb, std::span<const double> pose, Rng& rng) {
+  std::vector<double> variant(pose.begin(), pose.end());
+  const bool anywhere = rng.uniform() < 0.5;
+  for (const int d : limb.dofs) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    double& value = variant[static_cast<size_t>(d)];
+    value = anywhere ? rng.uniform(dof.lower, dof.upper) : value + 0.2 * (dof.upper - dof.lower) * rng.normal();
+  }
+  skeleton.clamp(variant);
+  return variant;
+}
+
+std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,
+                                      const Eigen::Vector3d& eye) {
+  int turn = -1;
+  Eigen::Vector3d root = Eigen::Vector3d::Zero();
+  bool outermost = true;
+  for (const int d : skeleton.joints().front().dof_indices) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    if (dof.is_translation) {
+      root += pose[static_cast<size_t>(d)] * dof.axis;
+    } else {
+      if (outermost && dof.axis.y() == 1) turn = d;
+      outermost = false;
+    }
+  }
+  if (turn < 0) return {};
+  // The body's own mirror image, x to -x with right and left exchanged: a turn about (x, y, z) becomes one about
+  // (x, -y, -z). Limbs that are alike have axes that are mirrored already.
+  std::vector<double> mirrored(pose.begin(), pose.end());
+  std::vector<bool> paired(pose.size(), false);
+  const std::vector<Limb> limbs = limbs_of(skeleton);
+  for (const auto& [a, b] : alike_limbs(skeleton, limbs)) {
+    exchange(mirrored, limbs[a], limbs[b]);
+    for (const size_t limb : {a, b}) {
+      for (const int d : limbs[limb].dofs) paired[static_cast<size_t>(d)] = true;
+    }
+  }
+  for (size_t d = 0; d < mirrored.size(); ++d) {
+    const Dof& dof = skeleton.dofs()[d];
+    if (!paired[d] && !dof.is_translation && std::abs(dof.axis.x()) < 0.5) mirrored[d] = -mirrored[d];
+  }
+  // From the plane x = 0 to the one through the root that faces the eye.
+  const Eigen::Vector3d towards = eye - root;
+  mirrored[static_cast<size_t>(turn)] =
+      wrap_angle(mirrored[static_cast<size_t>(turn)] + kPi + 2 * std::atan2(towards.x(), towards.z()));
+  skeleton.clamp(mirrored);
+  return mirrored;
 }
 
 }  // namespace silpose

@@ -1,22 +1,50 @@
-// Limbs of any skeleton, found from its tree: a limb is a largest subtree without a branching in it; what is left is the
-// trunk. For the human: head, legs, arms; and pelvis with spine.
+// Limbs of any skeleton, found from its tree, and other poses that look almost the same in a silhouette: limbs
+// reflected in depth, exchanged, or drawn at random; the whole body mirrored in depth.
+// Based on: kinematic jump processes (references.bib: sminchisescu2003).
 // Threads: functions without state.
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
 #include <vector>
 
-#include "silpose/body/skeleton.h"
+#include "silpose/base/rng.h"
+#include "silpose/body/body_model.h"
 
 namespace silpose {
 
-// DOF indices of each limb, then those of the trunk, ascending within each; joints without DOF add nothing and empty
-// limbs are left out. Together they hold every DOF once.
+// A largest subtree without a branching in it.
+struct Limb {
+  std::vector<int> joints;  // from the trunk outwards
+  std::vector<int> dofs;    // ascending; not empty
+};
+
+// In order of their first joint.
+std::vector<Limb> limbs_of(const Skeleton& skeleton);
+
+// DOF indices of each limb, then those of the trunk (what belongs to no limb; left out when empty). Together they hold
+// every DOF once.
 std::vector<std::vector<int>> limb_blocks(const Skeleton& skeleton);
 
-// The pose [D] with the angles of each pair of alike limbs exchanged, one pair at a time and then all at once. Limbs are
-// alike when their DOF have the same names but for a leading right_ or left_. From the side a silhouette hardly tells
-// which leg is which.
+// Limbs whose DOF have the same names but for a leading right_ or left_: pairs of indices into `limbs`.
+std::vector<std::pair<size_t, size_t>> alike_limbs(const Skeleton& skeleton, std::span<const Limb> limbs);
+
+// The pose [D] with the angles of each pair of alike limbs exchanged, one pair at a time and then all at once. From the
+// side a silhouette hardly tells which leg is which.
 std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose);
+
+// The pose with a limb's segments reflected in the planes that face `eye`: first segment, the others, all of them.
+// A segment ends where the next joint, or the end point, is. Only DOF of the limb change; a reflection that the limits
+// do not allow to within 5 cm is left out.
+std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Limb& limb, std::span<const double> pose,
+                                                const Eigen::Vector3d& eye);
+
+// The pose with the limb's DOF drawn anew: near the pose, or anywhere within limits, each with probability 1/2.
+std::vector<double> random_limb(const Skeleton& skeleton, const Limb& limb, std::span<const double> pose, Rng& rng);
+
+// The pose as a mirror that faces `eye` shows it, right and left relabelled: from far away its silhouette is the same.
+// Nothing for a skeleton whose root cannot turn about the vertical.
+std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,
+                                      const Eigen::Vector3d& eye);
 
 }  // namespace silpose

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "silpose/body/human.h"
 #include "silpose/body/test_body.h"
 
@@ -24,6 +27,7 @@ TEST(LimbBlocks, AHumanHasHeadLegsArmsAndTrunk) {
   const std::vector<int> leg = {13, 14, 15, 16, 17};
   EXPECT_THAT(blocks, Contains(leg));
   EXPECT_EQ(blocks.back(), (std::vector<int>{0, 1, 2, 3, 4, 5, 6, 7, 8, 9}));  // root, abdomen, thorax
+  EXPECT_EQ(alike_limbs(skeleton, limbs_of(skeleton)).size(), 2u);             // legs, arms
   std::vector<int> seen(37, 0);
   for (const auto& block : blocks) {
     for (const int d : block) ++seen[static_cast<size_t>(d)];
@@ -52,6 +56,89 @@ TEST(ExchangedLimbs, SwapsLegsArmsAndBoth) {
 
 TEST(ExchangedLimbs, ABodyWithoutPairsHasNone) {
   EXPECT_TRUE(exchanged_limbs(make_test_body().skeleton, std::vector<double>(8, 0.0)).empty());
+}
+
+const BodyModel& human() {
+  static const BodyModel body =
+      build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value();
+  return body;
+}
+
+std::vector<double> walking_pose() {
+  const BodyModel& body = human();
+  std::vector<double> pose = standing_pose(body);
+  const auto set = [&](const char* name, double degrees) { pose[static_cast<size_t>(*body.skeleton.find_dof(name))] = to_radians(degrees); };
+  set("root_ry", 30);
+  set("root_rz", 4);
+  set("thorax_ry", 10);
+  set("right_thigh_rx", 30);
+  set("right_shin_rx", 15);
+  set("left_shin_rx", 40);
+  set("left_upper_arm_rz", 25);
+  set("left_upper_arm_rx", 20);
+  set("left_forearm_rx", 35);
+  return pose;
+}
+
+TEST(ReflectedLimb, KeepsWhereTheJointsAreSeenFromAfar) {
+  const BodyModel& body = human();
+  const std::vector<double> pose = walking_pose();
+  const Eigen::Vector3d eye(0, 1, 200);  // far: perspective does not tell
+  const auto before = landmark_positions(body, pose);
+  int found = 0;
+  for (const Limb& limb : limbs_of(body.skeleton)) {
+    for (const auto& variant : reflected_limb(body, limb, pose, eye)) {
+      ++found;
+      const auto after = landmark_positions(body, variant);
+      double in_picture = 0, in_depth = 0;
+      for (size_t i = 0; i < after.size(); ++i) {
+        in_picture = std::max(in_picture, (after[i] - before[i]).head<2>().norm());
+        in_depth = std::max(in_depth, std::abs(after[i].z() - before[i].z()));
+      }
+      EXPECT_LT(in_picture, 0.06);
+      EXPECT_GT(in_depth, 0.03);
+      for (size_t d = 0; d < pose.size(); ++d) {
+        const bool own = std::ranges::find(limb.dofs, static_cast<int>(d)) != limb.dofs.end();
+        EXPECT_TRUE(own || std::abs(variant[d] - pose[d]) < 1e-12);
+      }
+    }
+  }
+  EXPECT_GE(found, 3);
+}
+
+TEST(MirroredInDepth, IsTheReflectionOfEveryJointWithItsPartner) {
+  const BodyModel& body = human();
+  const std::vector<double> pose = walking_pose();
+  const Eigen::Vector3d eye(2, 1, 5), root(pose[0], pose[1], pose[2]);
+  const std::vector<double> mirrored = mirrored_in_depth(body.skeleton, pose, eye);
+  Eigen::Vector3d normal = eye - root;
+  normal.y() = 0;
+  normal.normalize();
+  const auto names = landmark_names(body);
+  const auto before = landmark_positions(body, pose), after = landmark_positions(body, mirrored);
+  for (size_t i = 0; i < names.size(); ++i) {
+    std::string partner = names[i];
+    if (partner.starts_with("right_")) partner = "left_" + partner.substr(6);
+    else if (partner.starts_with("left_")) partner = "right_" + partner.substr(5);
+    const auto j = static_cast<size_t>(std::ranges::find(names, partner) - names.begin());
+    const Eigen::Vector3d expected = before[i] - 2 * normal.dot(before[i] - root) * normal;
+    EXPECT_LT((after[j] - expected).norm(), 0.015) << names[i];  // the mesh is not quite symmetric
+  }
+}
+
+TEST(RandomLimb, MovesOnlyTheLimbAndStaysInside) {
+  const Skeleton& skeleton = human().skeleton;
+  const std::vector<double> pose = walking_pose();
+  Rng rng(3);
+  for (const Limb& limb : limbs_of(skeleton)) {
+    const auto variant = random_limb(skeleton, limb, pose, rng);
+    EXPECT_NE(variant, pose);
+    for (size_t d = 0; d < pose.size(); ++d) {
+      const bool own = std::ranges::find(limb.dofs, static_cast<int>(d)) != limb.dofs.end();
+      const bool inside = variant[d] >= skeleton.dofs()[d].lower && variant[d] <= skeleton.dofs()[d].upper;
+      EXPECT_TRUE(own ? inside : variant[d] == pose[d]) << d;
+    }
+  }
 }
 
 }  // namespace

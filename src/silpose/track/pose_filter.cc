@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "silpose/base/parallel.h"
+#include "silpose/filter/estimate.h"
+#include "silpose/track/fitted_filter.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/sampling_filter.h"
 
@@ -22,6 +25,33 @@ std::vector<bool> dofs_where(const Skeleton& skeleton, Predicate predicate) {
   return free;
 }
 
+// Standard deviation of each landmark's coordinates over the particles. [J + E]
+std::vector<Eigen::Vector3d> landmark_spread(const BodyModel& body, const ParticleSet& particles) {
+  const size_t num_landmarks = static_cast<size_t>(body.skeleton.num_joints()) + body.end_points.size();
+  const auto num_dofs = static_cast<size_t>(body.skeleton.num_dofs());
+  const auto N = static_cast<size_t>(particles.size());
+  std::vector<std::vector<Eigen::Vector3d>> positions(N);
+  parallel_for(N, 64, [&](size_t begin, size_t end) {
+    for (size_t n = begin; n < end; ++n) {
+      positions[n] = landmark_positions(body, {particles.states.row(static_cast<Eigen::Index>(n)).data(), num_dofs});
+    }
+  });
+  const std::vector<double> weights = particles.weights();
+  std::vector<Eigen::Vector3d> spread(num_landmarks, Eigen::Vector3d::Zero());
+  for (size_t l = 0; l < num_landmarks; ++l) {
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero(), variance = Eigen::Vector3d::Zero();
+    for (size_t n = 0; n < N; ++n) mean += weights[n] * positions[n][l];
+    for (size_t n = 0; n < N; ++n) variance += weights[n] * (positions[n][l] - mean).cwiseAbs2();
+    spread[l] = variance.cwiseSqrt();
+  }
+  return spread;
+}
+
+PoseSpread spread_of(const BodyModel& body, const ParticleSet& particles) {
+  const StateBatch poses = particles.states.leftCols(body.skeleton.num_dofs());
+  return {weighted_deviation(poses, particles.weights(), periodic_dofs(body.skeleton)), landmark_spread(body, particles)};
+}
+
 // Root and pose in one state, compared on the whole image.
 class JointFilter final : public PoseFilter {
  public:
@@ -31,9 +61,9 @@ class JointFilter final : public PoseFilter {
                 dofs_where(options.body->skeleton, [&](const Dof& dof) { return !options.root_fixed || !is_root(dof); }),
                 options.seed) {}
 
-  void start(std::span<const double> pose) override {
-    held_.assign(pose.begin(), pose.end());
-    filter_.start(pose);
+  void start(std::span<const StartingPose> starts) override {
+    held_ = starts.front().pose;
+    filter_.start(held_);
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
     return filter_.step(likelihood_.prepare(observations), held_, dt_s, seconds);
@@ -41,6 +71,7 @@ class JointFilter final : public PoseFilter {
   FilterReport coast(double dt_s) override { return filter_.coast(dt_s); }
   const ParticleSet& particles() const override { return filter_.particles(); }
   std::vector<double> estimate() const override { return filter_.estimate(); }
+  PoseSpread spread() const override { return spread_of(likelihood_.body(), particles()); }
 
  private:
   SilhouetteLikelihood likelihood_;
@@ -63,10 +94,10 @@ class TwoFilters final : public PoseFilter {
                      options.seed),
         root_filter_(options, whole_, dofs_where(skeleton_, is_root), options.seed + 1) {}
 
-  void start(std::span<const double> pose) override {
-    estimate_.assign(pose.begin(), pose.end());
-    pose_filter_.start(pose);
-    root_filter_.start(pose);
+  void start(std::span<const StartingPose> starts) override {
+    estimate_ = starts.front().pose;
+    pose_filter_.start(estimate_);
+    root_filter_.start(estimate_);
     particles_ = pose_filter_.particles();
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
@@ -83,6 +114,7 @@ class TwoFilters final : public PoseFilter {
   }
   const ParticleSet& particles() const override { return particles_; }
   std::vector<double> estimate() const override { return estimate_; }
+  PoseSpread spread() const override { return spread_of(whole_.body(), particles_); }
 
  private:
   // Pose particles, each with a root translation of the root filter's.
@@ -110,10 +142,11 @@ class TwoFilters final : public PoseFilter {
 
 }  // namespace
 
-std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, Renderers renderers) {
+std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const Likelihoods& likelihoods) {
   options.check();
-  if (options.preset == "thesis") return std::make_unique<TwoFilters>(options, renderers);
-  return std::make_unique<JointFilter>(options, std::move(renderers));
+  if (options.num_hypotheses) return std::make_unique<FittedFilter>(options, likelihoods.fine, likelihoods.coarse);
+  if (options.preset == "thesis") return std::make_unique<TwoFilters>(options, likelihoods.renderers);
+  return std::make_unique<JointFilter>(options, likelihoods.renderers);
 }
 
 }  // namespace silpose

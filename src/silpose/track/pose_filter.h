@@ -2,7 +2,8 @@
 //
 // Contract: start() before anything else, and again after losing the subject. step() takes what was seen; coast() is for
 // an instant without a usable observation. After each, particles() holds states whose first D columns are poses within
-// the limits, and estimate() one pose made of them. The same seed and calls give the same states on any number of threads.
+// the limits, estimate() one pose made of them, and spread() how far the truth may be from it. The same seed and calls
+// give the same states on any number of threads.
 //
 // Threads: one thread per filter; steps use all cores inside.
 #pragma once
@@ -12,19 +13,27 @@
 #include <vector>
 
 #include "silpose/filter/particle_set.h"
+#include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/shape/observation.h"
+#include "silpose/track/initialisation.h"
 #include "silpose/track/step_report.h"
 #include "silpose/track/tracker_options.h"
 
 namespace silpose {
 
+// Standard deviations about an estimate.
+struct PoseSpread {
+  std::vector<double> dofs;                // [D] radians, metres
+  std::vector<Eigen::Vector3d> landmarks;  // [J + E] metres, as body's landmark_positions
+};
+
 class PoseFilter {
  public:
   virtual ~PoseFilter() = default;
 
-  // Starts over around a pose [D].
-  virtual void start(std::span<const double> pose) = 0;
+  // Starts over around poses, best first; a filter may take the first alone. REQUIRES: at least one.
+  virtual void start(std::span<const StartingPose> starts) = 0;
 
   // Shapes: one observation a camera, at least one with a say; `dt_s` seconds since the last call.
   virtual FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) = 0;
@@ -32,11 +41,18 @@ class PoseFilter {
 
   [[nodiscard]] virtual const ParticleSet& particles() const = 0;  // states [N, D' >= D]
   [[nodiscard]] virtual std::vector<double> estimate() const = 0;  // [D]
+  [[nodiscard]] virtual PoseSpread spread() const = 0;
 };
 
-// The filter of `options.preset`, on the renderers of the tracker's level of detail, one a camera.
+// What filters compare with: renderers of the tracker's level of detail, one a camera, for those that sample; a fine and
+// a coarse mesh for those that fit. All of the same body before the same cameras.
+struct Likelihoods {
+  std::vector<std::shared_ptr<const BatchRenderer>> renderers;
+  std::shared_ptr<const CoverageLikelihood> fine, coarse;
+};
+
+// The filter of `options`, which are resolved.
 // Errors: throws std::invalid_argument as TrackerOptions::check().
-std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options,
-                                             std::vector<std::shared_ptr<const BatchRenderer>> renderers);
+std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const Likelihoods& likelihoods);
 
 }  // namespace silpose

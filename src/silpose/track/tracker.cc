@@ -6,13 +6,11 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/clock.h"
-#include "silpose/base/parallel.h"
 #include "silpose/filter/estimate.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/segment/background_segmenter.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/observe.h"
-#include "silpose/track/pose_estimate.h"
 #include "silpose/track/pose_filter.h"
 
 namespace silpose {
@@ -20,8 +18,8 @@ namespace {
 
 // A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm.
 constexpr double kLeastTrust = 0.3;
-// A start is looked at more closely than a step: what tells left from right, and front from back, is a few pixels.
-constexpr int kStartResolution = 256;
+// The mesh that candidates are ranked by.
+constexpr int kRankingVertices = 800, kRankingRows = 1;
 // After coasting for longer than this the subject may be anywhere: the next good mask starts over.
 constexpr double kLongestCoast_s = 1.0;
 
@@ -30,65 +28,48 @@ bool any_has_a_say(std::span<const Observation> observations) {
                      [](const Observation& o) { return !o.trust.nothing_found && o.trust.overall >= kLeastTrust; });
 }
 
-// Standard deviation of each landmark's coordinates over the particles. [J + E]
-std::vector<Eigen::Vector3d> landmark_spread(const BodyModel& body, const ParticleSet& particles) {
-  const size_t num_landmarks = static_cast<size_t>(body.skeleton.num_joints()) + body.end_points.size();
-  const auto num_dofs = static_cast<size_t>(body.skeleton.num_dofs());
-  const auto N = static_cast<size_t>(particles.size());
-  std::vector<std::vector<Eigen::Vector3d>> positions(N);
-  parallel_for(N, 64, [&](size_t begin, size_t end) {
-    for (size_t n = begin; n < end; ++n) {
-      positions[n] = landmark_positions(body, {particles.states.row(static_cast<Eigen::Index>(n)).data(), num_dofs});
-    }
-  });
-  const std::vector<double> weights = particles.weights();
-  std::vector<Eigen::Vector3d> spread(num_landmarks, Eigen::Vector3d::Zero());
-  for (size_t l = 0; l < num_landmarks; ++l) {
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero(), variance = Eigen::Vector3d::Zero();
-    for (size_t n = 0; n < N; ++n) mean += weights[n] * positions[n][l];
-    for (size_t n = 0; n < N; ++n) variance += weights[n] * (positions[n][l] - mean).cwiseAbs2();
-    spread[l] = variance.cwiseSqrt();
-  }
-  return spread;
-}
-
 }  // namespace
 
 struct Tracker::Impl {
   explicit Impl(const TrackerOptions& given) : options(given.resolved()) {
-    const auto lod = std::make_shared<const BodyModel>(level_of_detail(*options.body, options.lod_vertices));
-    for (const PinholeCamera& camera : options.cameras) {
-      renderers.push_back(std::make_shared<const BatchRenderer>(lod, camera));
+    options.check();
+    const auto detail = [&](int num_vertices) {
+      return num_vertices == 0 ? options.body : std::make_shared<const BodyModel>(level_of_detail(*options.body, num_vertices));
+    };
+    const auto fine = detail(*options.lod_vertices);
+    likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
+    if (options.num_hypotheses) {
+      likelihoods.coarse =
+          std::make_shared<const CoverageLikelihood>(detail(kRankingVertices), options.cameras, kRankingRows);
+    } else {
+      for (const PinholeCamera& camera : options.cameras) {
+        likelihoods.renderers.push_back(std::make_shared<const BatchRenderer>(fine, camera));
+      }
     }
-    filter = make_pose_filter(options, renderers);
+    filter = make_pose_filter(options, likelihoods);
     if (!options.proposal) options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton);
   }
 
-  // The starting pose for what is seen: the given one, or by descent; the last estimate competes, too.
-  std::vector<double> starting_pose(std::span<const Observation> observations) const {
-    if (options.initial_pose && last_pose.empty()) return *options.initial_pose;
-    const SilhouetteLikelihood likelihood(renderers, {.resolution = kStartResolution});
+  // Starting poses for what is seen: the given one, or by descent; the last estimate competes, too.
+  std::vector<StartingPose> starting_poses(std::span<const Observation> observations) const {
+    if (options.initial_pose && last_pose.empty()) return {{*options.initial_pose, 0}};
     Rng rng(options.seed, static_cast<uint64_t>(steps));
     StateBatch candidates = options.proposal->propose(observations.front(), 0, rng);
     if (!last_pose.empty()) {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
-    return initialise(likelihood, likelihood.prepare(observations), candidates, {.seed = options.seed})
-        .front()
-        .pose;
+    return initialise(*likelihoods.fine, observations, candidates);
   }
 
   void summarise(std::span<const Observation> observations, StepReport& report) {
-    const ParticleSet& particles = filter->particles();
-    const auto num_dofs = static_cast<Eigen::Index>(options.body->skeleton.num_dofs());
-    const StateBatch poses = particles.states.leftCols(num_dofs);
-    const std::vector<double> weights = particles.weights();
     report.pose = filter->estimate();
-    const auto best = poses.row(mode_index(weights));
-    report.mode.assign(best.data(), best.data() + num_dofs);
-    report.spread = weighted_deviation(poses, weights, periodic_dofs(options.body->skeleton));
-    report.landmark_spread = landmark_spread(*options.body, particles);
+    const ParticleSet& particles = filter->particles();
+    const auto best = particles.states.row(mode_index(particles.log_weights));
+    report.mode.assign(best.data(), best.data() + options.body->skeleton.num_dofs());
+    PoseSpread spread = filter->spread();
+    report.spread = std::move(spread.dofs);
+    report.landmark_spread = std::move(spread.landmarks);
     if (report.state != StepReport::State::kCoasted) {
       for (size_t c = 0; c < observations.size(); ++c) {
         if (observations[c].trust.nothing_found) continue;
@@ -101,7 +82,7 @@ struct Tracker::Impl {
   }
 
   TrackerOptions options;
-  std::vector<std::shared_ptr<const BatchRenderer>> renderers;  // of the level of detail, one a camera
+  Likelihoods likelihoods;
   std::unique_ptr<PoseFilter> filter;
   std::vector<std::unique_ptr<Segmenter>> segmenters;  // online, one a camera; made when first needed
   std::vector<double> last_pose;
@@ -131,7 +112,7 @@ StepReport Tracker::step(std::span<const Observation> observations, int64_t fram
 
   if (seen && !t.started) {
     const Stopwatch stopwatch;
-    t.filter->start(t.starting_pose(observations));
+    t.filter->start(t.starting_poses(observations));
     t.started = true;
     report.state = StepReport::State::kInitialised;
     report.seconds.start += stopwatch.seconds();

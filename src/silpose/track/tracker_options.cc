@@ -10,7 +10,14 @@ namespace silpose {
 
 TrackerOptions TrackerOptions::resolved() const {
   const bool thesis = preset == "thesis";
+  const bool accurate = preset == "accurate";
   TrackerOptions all = *this;
+  if (!thesis && !num_particles && !num_layers) {
+    if (!all.num_hypotheses) all.num_hypotheses = accurate ? 8 : 4;
+    if (!all.smooth) all.smooth = accurate;
+    if (!all.lod_vertices) all.lod_vertices = accurate ? 0 : 2500;
+    return all;
+  }
   if (!all.num_layers) all.num_layers = thesis || all.num_particles ? 1 : 10;
   if (!all.num_particles) all.num_particles = *all.num_layers == 1 ? 1000 : 500;
   if (!all.motion) all.motion = "diffusion";
@@ -20,6 +27,8 @@ TrackerOptions TrackerOptions::resolved() const {
   if (!all.regenerate) all.regenerate = thesis ? 0.2 : 0.0;
   if (!all.sharpness) all.sharpness = 100;
   if (!all.estimate) all.estimate = Estimate::kMean;
+  if (!all.smooth) all.smooth = false;
+  if (!all.lod_vertices) all.lod_vertices = 2000;
   return all;
 }
 
@@ -27,26 +36,39 @@ void TrackerOptions::check() const {
   const auto require = [](bool condition, const std::string& message) { silpose::check(condition, "{}", message); };
   require(body != nullptr, "no body");
   require(!cameras.empty(), "no camera");
-  require(preset == "default" || preset == "thesis", fmt::format("preset '{}' is not default or thesis", preset));
+  require(preset == "default" || preset == "accurate" || preset == "thesis",
+          fmt::format("preset '{}' is not default, accurate or thesis", preset));
   const TrackerOptions all = resolved();
-  require(*all.num_particles >= 2 && *all.num_particles <= 1'000'000,
-          fmt::format("{} particles, not within 2..1000000", *all.num_particles));
-  require(*all.num_layers >= 1 && *all.num_layers <= 200, fmt::format("{} layers, not within 1..200", *all.num_layers));
-  require(preset != "thesis" || *all.num_layers == 1, "preset thesis has one layer");
-  require(std::isfinite(*all.sigma_deg) && *all.sigma_deg > 0 && *all.sigma_deg <= 90,
-          fmt::format("sigma {} degrees, not within (0, 90]", *all.sigma_deg));
-  require(std::isfinite(*all.sharpness) && *all.sharpness > 0,
-          fmt::format("sharpness {} is not a positive number", *all.sharpness));
+  if (all.num_hypotheses) {
+    require(!all.num_particles && !all.num_layers && preset != "thesis",
+            "hypotheses are fitted: they go neither with particles and layers nor with preset thesis");
+    require(*all.num_hypotheses >= 1 && *all.num_hypotheses <= 64,
+            fmt::format("{} hypotheses, not within 1..64", *all.num_hypotheses));
+    require(!all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.sharpness,
+            "motion, sigma, resampling, regenerate and sharpness are of the sampling filters: give particles or layers");
+  } else {
+    require(*all.num_particles >= 2 && *all.num_particles <= 1'000'000,
+            fmt::format("{} particles, not within 2..1000000", *all.num_particles));
+    require(*all.num_layers >= 1 && *all.num_layers <= 200,
+            fmt::format("{} layers, not within 1..200", *all.num_layers));
+    require(preset != "thesis" || *all.num_layers == 1, "preset thesis has one layer");
+    require(std::isfinite(*all.sigma_deg) && *all.sigma_deg > 0 && *all.sigma_deg <= 90,
+            fmt::format("sigma {} degrees, not within (0, 90]", *all.sigma_deg));
+    require(std::isfinite(*all.sharpness) && *all.sharpness > 0,
+            fmt::format("sharpness {} is not a positive number", *all.sharpness));
+    require(!*all.smooth, "smooth is of the fitted mixture: it goes with neither particles nor preset thesis");
+    const auto resampler = make_resampler(*all.resampling, *all.regenerate);
+    require(resampler.ok(), resampler.ok() ? "" : resampler.error().message);
+    const auto model = make_motion_model(*all.motion, body->skeleton, {});
+    require(model.ok(), model.ok() ? "" : model.error().message);
+  }
   require(std::isfinite(resample_below) && resample_below >= 0 && resample_below <= 1,
           fmt::format("resample below {}, not within 0..1", resample_below));
-  require(lod_vertices >= 100, fmt::format("{} vertices, not at least 100", lod_vertices));
+  require(*all.lod_vertices == 0 || *all.lod_vertices >= 100,
+          fmt::format("{} vertices, not at least 100", *all.lod_vertices));
   const auto num_dofs = static_cast<size_t>(body->skeleton.num_dofs());
   require(!initial_pose || initial_pose->size() == num_dofs,
           fmt::format("initial pose of {} numbers for {} DOF", initial_pose ? initial_pose->size() : 0, num_dofs));
-  const auto resampler = make_resampler(*all.resampling, *all.regenerate);
-  require(resampler.ok(), resampler.ok() ? "" : resampler.error().message);
-  const auto model = make_motion_model(*all.motion, body->skeleton, {});
-  require(model.ok(), model.ok() ? "" : model.error().message);
 }
 
 }  // namespace silpose

@@ -19,7 +19,11 @@ enum class Estimate { kMean, kMode, kCluster };
 struct TrackerOptions {
   std::shared_ptr<const BodyModel> body;       // full mesh; the tracker makes its own level of detail
   std::vector<PinholeCamera> cameras;          // [C]
-  std::string preset = "default";              // "default" or "thesis"; fills what is left unset below
+  std::string preset = "default";              // "default", "accurate" or "thesis"; fills what is left unset below
+  // The fitted mixture; unset where a sampling filter is asked for.
+  std::optional<int> num_hypotheses;
+  std::optional<bool> smooth;                  // a batch fit over the clip afterwards; only track_clip() does it
+  // The sampling filters: preset thesis, or any other with one of the first two set.
   std::optional<int> num_particles;            // per layer; set alone it makes the filter plain
   std::optional<int> num_layers;               // 1: plain
   std::optional<std::string> motion;           // motion/motion_model.h
@@ -30,7 +34,7 @@ struct TrackerOptions {
   std::optional<double> sharpness;
   std::optional<Estimate> estimate;
   bool root_fixed = false;                     // the six root DOF stay where they started
-  int lod_vertices = 2000;
+  std::optional<int> lod_vertices;             // of the mesh that is compared; 0: the body's own
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
   std::shared_ptr<const Proposal> proposal;    // candidates for the start and for regeneration; absent: common poses

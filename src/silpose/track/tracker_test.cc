@@ -24,7 +24,7 @@ class TubeProposal : public Proposal {
 
 struct Variant {
   std::string name, preset = "default";
-  int particles = 200, layers = 1;
+  int particles = 200, layers = 1;  // none: fitted hypotheses
 };
 
 class TrackerTest : public ::testing::TestWithParam<Variant> {
@@ -34,8 +34,10 @@ class TrackerTest : public ::testing::TestWithParam<Variant> {
     options.body = body_;
     options.cameras = {camera_};
     options.preset = GetParam().preset;
-    options.num_particles = GetParam().particles;
-    options.num_layers = GetParam().layers;
+    if (GetParam().layers > 0) {
+      options.num_particles = GetParam().particles;
+      options.num_layers = GetParam().layers;
+    }
     options.proposal = std::make_shared<TubeProposal>();
     return options;
   }
@@ -136,7 +138,8 @@ TEST_P(TrackerTest, TheNumberOfThreadsChangesNothing) {
   EXPECT_EQ(poses[0], poses[1]);
 }
 
-TEST_P(TrackerTest, AnotherSeedGivesAnotherResult) {
+using SamplingTrackerTest = TrackerTest;
+TEST_P(SamplingTrackerTest, AnotherSeedGivesAnotherResult) {
   std::vector<double> poses[2];
   for (const int seed : {1, 2}) {
     auto seeded = options();
@@ -148,11 +151,15 @@ TEST_P(TrackerTest, AnotherSeedGivesAnotherResult) {
   EXPECT_NE(poses[0], poses[1]);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    Filters, TrackerTest,
-    ::testing::Values(Variant{.name = "annealed", .particles = 60, .layers = 8}, Variant{.name = "plain"},
-                      Variant{.name = "thesis", .preset = "thesis"}),
-    [](const auto& variant) { return variant.param.name; });
+const auto kSampling = ::testing::Values(Variant{.name = "annealed", .particles = 60, .layers = 8},
+                                         Variant{.name = "plain"}, Variant{.name = "thesis", .preset = "thesis"});
+const auto kName = [](const auto& variant) { return variant.param.name; };
+INSTANTIATE_TEST_SUITE_P(Sampling, TrackerTest, kSampling, kName);
+INSTANTIATE_TEST_SUITE_P(Fitted, TrackerTest,
+                         ::testing::Values(Variant{.name = "default", .layers = 0},
+                                           Variant{.name = "accurate", .preset = "accurate", .layers = 0}),
+                         kName);
+INSTANTIATE_TEST_SUITE_P(Sampling, SamplingTrackerTest, kSampling, kName);
 
 TEST(TrackerOptions, AreChecked) {
   const auto body = std::make_shared<BodyModel>(make_test_body());
@@ -169,11 +176,15 @@ TEST(TrackerOptions, AreChecked) {
   EXPECT_THROW(make([](auto& o) { o.preset = "best"; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.num_particles = 0; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.num_layers = 0; }), std::invalid_argument);
-  EXPECT_THROW(make([](auto& o) { o.sigma_deg = -1; }), std::invalid_argument);
-  EXPECT_THROW(make([](auto& o) { o.sharpness = std::nan(""); }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.sigma_deg = -1; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.sharpness = std::nan(""); }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.smooth = true; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.num_hypotheses = 2; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_hypotheses = 0; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.sigma_deg = 2; }), std::invalid_argument);  // the fitted filter has none
   EXPECT_THROW(make([](auto& o) { o.initial_pose = {1, 2, 3}; }), std::invalid_argument);
-  EXPECT_THROW(make([](auto& o) { o.motion = "teleport"; }), std::invalid_argument);
-  EXPECT_THROW(make([](auto& o) { o.resampling = "best"; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.motion = "teleport"; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.resampling = "best"; }), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,43 @@
+// FittedFilter: the mixture of fitted hypotheses as a PoseFilter: prepares what was seen, weighs it by how noisy it
+// proves to be, and tells the estimate and its spread.
+// Threads: as PoseFilter.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "silpose/track/mixture_filter.h"
+#include "silpose/track/pose_filter.h"
+
+namespace silpose {
+
+class FittedFilter final : public PoseFilter {
+ public:
+  // `options` are resolved.
+  FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
+               std::shared_ptr<const CoverageLikelihood> coarse);
+
+  void start(std::span<const StartingPose> starts) override;
+  FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override;
+  FilterReport coast(double dt_s) override;
+  [[nodiscard]] const ParticleSet& particles() const override { return particles_; }  // the hypotheses' poses
+  [[nodiscard]] std::vector<double> estimate() const override;
+  [[nodiscard]] PoseSpread spread() const override;
+
+  [[nodiscard]] const MixtureFilter& mixture() const { return mixture_; }
+  // Outline variance times correlation length that was found, in units of pixel_unit^3. [C]
+  [[nodiscard]] std::span<const double> noise() const { return noise_; }
+
+ private:
+  void estimate_noise(const CoverageEvidence& evidence);
+  FilterReport report();
+
+  std::shared_ptr<const CoverageLikelihood> fine_;
+  MixtureFilter mixture_;
+  ParticleSet particles_;
+  std::vector<double> noise_;  // [C]
+  double age_s_ = 0;
+};
+
+}  // namespace silpose

@@ -1,0 +1,230 @@
+#include "silpose/track/mixture_filter.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "silpose/base/check.h"
+#include "silpose/base/parallel.h"
+#include "silpose/motion/noise.h"
+
+namespace silpose {
+namespace {
+
+// How well a starting pose is known, and how fast a body may be moving when it is first seen.
+constexpr double kStartAngle = 0.15, kStartMetres = 0.05;        // radians, metres
+constexpr double kStartTurn = 2.0, kStartSpeed = 1.0;            // per second
+// A limb that jumped may be anywhere near where it landed.
+constexpr double kJumpAngle = 0.5, kJumpTurn = 3.0;
+constexpr FitStage kJumpStages[] = {{Blur::k8, 2}, {Blur::k4, 3}, {Blur::k2, 3}};
+
+std::span<const double> view(const Eigen::VectorXd& pose) { return {pose.data(), static_cast<size_t>(pose.size())}; }
+
+PosePrior prior_of(const GaussianComponent& component) {
+  const Eigen::Index D = component.num_dofs();
+  return {component.pose(), component.pose_covariance().ldlt().solve(Eigen::MatrixXd::Identity(D, D))};
+}
+
+double log_determinant(const Eigen::MatrixXd& positive) {
+  return positive.ldlt().vectorD().array().abs().max(1e-300).log().sum();
+}
+
+}  // namespace
+
+struct MixtureFilter::Child {
+  GaussianComponent component;  // predicted, with the limb that jumped set free; then conditioned
+  PosePrior prior;
+  Eigen::VectorXd start;        // of the fit
+  PoseFit fit;
+  double log_weight = 0;        // before this step's evidence
+  int parent = 0;
+  bool jumped = false;
+};
+
+MixtureFilter::MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine,
+                             std::shared_ptr<const CoverageLikelihood> coarse, const MixtureOptions& options)
+    : fine_(std::move(fine)), coarse_(std::move(coarse)), options_(options) {
+  check(fine_ && coarse_, "MixtureFilter: no likelihood");
+  check(options.num_hypotheses >= 1, "MixtureFilter: {} hypotheses", options.num_hypotheses);
+  const Skeleton& skeleton = fine_->body().skeleton;
+  limbs_ = limbs_of(skeleton);
+  pairs_ = alike_limbs(skeleton, limbs_);
+  acceleration_ = acceleration_deviation(skeleton);
+  for (double& deviation : acceleration_) deviation *= options.acceleration;
+}
+
+void MixtureFilter::start(const std::vector<Eigen::VectorXd>& poses, std::span<const double> log_weights) {
+  check(!poses.empty() && poses.size() == log_weights.size(), "MixtureFilter: {} poses, {} weights", poses.size(),
+        log_weights.size());
+  const auto dofs = fine_->body().skeleton.dofs();
+  std::vector<double> deviation, speed;
+  for (const Dof& dof : dofs) {
+    deviation.push_back(dof.is_translation ? kStartMetres : kStartAngle);
+    speed.push_back(dof.is_translation || dof.joint_idx == 0 ? kStartSpeed : kStartTurn);
+  }
+  hypotheses_.clear();
+  for (size_t i = 0; i < poses.size(); ++i) {
+    hypotheses_.push_back(component_at(view(poses[i]), deviation, speed));
+    hypotheses_.back().log_weight = log_weights[i];
+  }
+  std::ranges::stable_sort(hypotheses_, std::greater<>{}, &GaussianComponent::log_weight);
+  normalise_weights(hypotheses_);
+  parents_.assign(hypotheses_.size(), -1);
+}
+
+MixtureReport MixtureFilter::step(const CoverageEvidence& evidence, double dt_s) {
+  check(!hypotheses_.empty(), "MixtureFilter: step before start");
+  MixtureReport report;
+  const PoseFitOptions fit_options{.rest_weight = options_.rest_weight};
+  std::vector<Child> children(hypotheses_.size());
+  const auto fit = [&](std::vector<Child>& some, std::span<const FitStage> stages) {
+    parallel_for(some.size(), 1, [&](size_t begin, size_t end) {
+      CoverageLikelihood::Scratch scratch(*fine_);
+      for (size_t i = begin; i < end; ++i) {
+        some[i].fit = fit_pose(*fine_, evidence, some[i].prior, some[i].start, stages, fit_options, scratch);
+      }
+    });
+    report.num_fits += static_cast<int>(some.size());
+    for (const Child& child : some) report.num_iterations += child.fit.num_iterations;
+  };
+  for (size_t i = 0; i < children.size(); ++i) {
+    Child& child = children[i];
+    child.component = hypotheses_[i];
+    predict_constant_velocity(child.component, dt_s, acceleration_, kNoiseInterval_s, options_.velocity_decay_per_s);
+    child.prior = prior_of(child.component);
+    child.start = child.prior.mean;
+    child.log_weight = hypotheses_[i].log_weight;
+    child.parent = static_cast<int>(i);
+  }
+  fit(children, kTrackingStages);
+  std::vector<Child> jumps = candidates(evidence, children, report);
+  fit(jumps, kJumpStages);
+  for (Child& jump : jumps) children.push_back(std::move(jump));
+  keep_best(std::move(children), report);
+  ++steps_;
+  return report;
+}
+
+void MixtureFilter::coast(double dt_s) {
+  for (GaussianComponent& hypothesis : hypotheses_) {
+    predict_constant_velocity(hypothesis, dt_s, acceleration_, kNoiseInterval_s, options_.velocity_decay_per_s + 3);
+  }
+  parents_.resize(hypotheses_.size());
+  std::iota(parents_.begin(), parents_.end(), 0);
+  ++steps_;
+}
+
+// Other limbs for the best of what was fitted: many are tried by one evaluation with a coarse mesh, few are kept.
+std::vector<MixtureFilter::Child> MixtureFilter::candidates(const CoverageEvidence& evidence,
+                                                            const std::vector<Child>& fitted,
+                                                            MixtureReport& report) const {
+  const BodyModel& body = fine_->body();
+  std::vector<size_t> order(fitted.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::ranges::stable_sort(order, std::greater<>{},
+                           [&](size_t i) { return fitted[i].log_weight - 0.5 * fitted[i].fit.cost(); });
+  order.resize(std::min(order.size(), static_cast<size_t>(options_.num_parents)));
+
+  struct Variant {
+    size_t parent;
+    std::vector<size_t> limbs;
+    std::vector<double> pose;
+    double energy = 0;
+  };
+  std::vector<Variant> variants;
+  const Eigen::Vector3d eye = fine_->cameras().front().centre_in_world();
+  for (const size_t p : order) {
+    const std::span<const double> pose = view(fitted[p].fit.pose);
+    for (size_t l = 0; l < limbs_.size(); ++l) {
+      for (auto& reflected : reflected_limb(body, limbs_[l], pose, eye)) variants.push_back({p, {l}, std::move(reflected)});
+    }
+    for (const auto& [a, b] : pairs_) {
+      std::vector<double> exchanged(pose.begin(), pose.end());
+      for (size_t k = 0; k < limbs_[a].dofs.size(); ++k) {
+        std::swap(exchanged[static_cast<size_t>(limbs_[a].dofs[k])], exchanged[static_cast<size_t>(limbs_[b].dofs[k])]);
+      }
+      variants.push_back({p, {a, b}, std::move(exchanged)});
+    }
+    Rng rng(options_.seed, steps_, p);
+    for (int i = 0; i < options_.num_random_limbs && !limbs_.empty(); ++i) {
+      const size_t l = static_cast<size_t>(i) % limbs_.size();
+      variants.push_back({p, {l}, random_limb(body.skeleton, limbs_[l], pose, rng)});
+    }
+  }
+  report.num_tried += static_cast<int>(variants.size());
+  parallel_for(variants.size(), 8, [&](size_t begin, size_t end) {
+    CoverageLikelihood::Scratch scratch(*coarse_);
+    for (size_t i = begin; i < end; ++i) {
+      variants[i].energy = coarse_->energy(evidence, Blur::k4, variants[i].pose, scratch);
+    }
+  });
+  std::ranges::stable_sort(variants, {}, &Variant::energy);
+
+  std::vector<Child> jumps;
+  std::vector<int> taken(fitted.size(), 0);
+  for (const Variant& variant : variants) {
+    if (taken[variant.parent]++ >= options_.num_fitted) continue;
+    const Child& parent = fitted[variant.parent];
+    Child child;
+    child.component = parent.component;
+    const Eigen::Index D = child.component.num_dofs();
+    child.start = parent.fit.pose;  // whole turns and all
+    for (const size_t l : variant.limbs) {
+      for (const int d : limbs_[l].dofs) {
+        Eigen::MatrixXd& P = child.component.covariance;
+        for (const Eigen::Index k : {static_cast<Eigen::Index>(d), D + d}) {
+          P.row(k).setZero();
+          P.col(k).setZero();
+        }
+        child.start[d] = variant.pose[static_cast<size_t>(d)];
+        P(d, d) = kJumpAngle * kJumpAngle;
+        P(D + d, D + d) = kJumpTurn * kJumpTurn;
+        child.component.mean[d] = child.start[d];
+        child.component.mean[D + d] = 0;
+      }
+    }
+    child.prior = prior_of(child.component);
+    child.log_weight = parent.log_weight + options_.jump_log_prior;
+    child.parent = parent.parent;
+    child.jumped = true;
+    jumps.push_back(std::move(child));
+  }
+  return jumps;
+}
+
+void MixtureFilter::keep_best(std::vector<Child> children, MixtureReport& report) {
+  const BodyModel& body = fine_->body();
+  for (Child& child : children) {
+    // The evidence by Laplace's method: likelihood and prior at the best pose, times how much of the prior is left.
+    child.log_weight -= 0.5 * (child.fit.cost() + log_determinant(child.fit.information) - log_determinant(child.prior.information));
+  }
+  std::ranges::stable_sort(children, std::greater<>{}, &Child::log_weight);
+  std::vector<std::vector<Eigen::Vector3d>> landmarks;
+  std::vector<GaussianComponent> kept;
+  std::vector<int> parents;
+  for (Child& child : children) {
+    std::vector<Eigen::Vector3d> x = landmark_positions(body, view(child.fit.pose));
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const auto& other : landmarks) {
+      double furthest = 0;
+      for (size_t i = 0; i < x.size(); ++i) furthest = std::max(furthest, (x[i] - other[i]).norm());
+      nearest = std::min(nearest, furthest);
+    }
+    if (nearest < options_.merge_distance) continue;
+    if (kept.empty()) report.energy = child.fit.energy;
+    condition_on_pose(child.component, child.fit.pose, child.fit.information);
+    child.component.log_weight = child.log_weight;
+    report.num_jumps_kept += child.jumped ? 1 : 0;
+    kept.push_back(std::move(child.component));
+    parents.push_back(child.parent);
+    landmarks.push_back(std::move(x));
+    if (std::ssize(kept) == options_.num_hypotheses) break;
+  }
+  hypotheses_ = std::move(kept);
+  parents_ = std::move(parents);
+  normalise_weights(hypotheses_);
+}
+
+}  // namespace silpose

@@ -1,0 +1,72 @@
+// MixtureFilter: a few hypotheses, each an iterated extended Kalman filter whose measurement step is a fit of the
+// silhouette. They are predicted, fitted, weighed and killed as particles are; what a silhouette cannot tell (which leg
+// is in front, whether a forearm points at the camera or away) gives new ones.
+//
+// One step: predict at constant velocity; fit each hypothesis; try other limbs for the best two; weigh by evidence;
+// merge those that came together; keep the best K.
+// Based on: iterated extended Kalman filter (references.bib: bell1993), kinematic jumps (sminchisescu2003).
+// Threads: one thread per filter; steps use all cores inside and give the same result on any number.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "silpose/filter/gaussian_mixture.h"
+#include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/limbs.h"
+#include "silpose/track/pose_fit.h"
+
+namespace silpose {
+
+struct MixtureOptions {
+  int num_hypotheses = 4;
+  int num_parents = 2;        // of new hypotheses, the best
+  int num_random_limbs = 20;  // tried for each parent
+  int num_fitted = 3;         // new hypotheses fitted for each parent, the most promising
+  double acceleration = 1;    // times motion/noise.h's acceleration_deviation
+  double rest_weight = 0.03;  // pose_fit.h
+  double velocity_decay_per_s = 0;
+  double jump_log_prior = -6;   // log-probability of a hypothesis that jumped
+  double merge_distance = 0.05;  // metres, of the joint that is furthest off
+  uint64_t seed = 1;
+};
+
+struct MixtureReport {
+  int num_fits = 0, num_iterations = 0, num_tried = 0, num_jumps_kept = 0;
+  double energy = 0;  // of the best hypothesis
+};
+
+class MixtureFilter {
+ public:
+  // `fine` is fitted, `coarse` ranks candidates: two meshes of the same body before the same cameras.
+  MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine, std::shared_ptr<const CoverageLikelihood> coarse,
+                const MixtureOptions& options);
+
+  // Starts over at poses [K][D], each as likely as `log_weights` [K] say.
+  void start(const std::vector<Eigen::VectorXd>& poses, std::span<const double> log_weights);
+
+  MixtureReport step(const CoverageEvidence& evidence, double dt_s);
+  void coast(double dt_s);
+
+  // Best first, weights normalised.
+  [[nodiscard]] std::span<const GaussianComponent> hypotheses() const { return hypotheses_; }
+  // Of each hypothesis: the index, in the step before, of the one that it comes from.
+  [[nodiscard]] std::span<const int> parents() const { return parents_; }
+
+ private:
+  struct Child;
+  std::vector<Child> candidates(const CoverageEvidence& evidence, const std::vector<Child>& fitted,
+                                MixtureReport& report) const;
+  void keep_best(std::vector<Child> children, MixtureReport& report);
+
+  std::shared_ptr<const CoverageLikelihood> fine_, coarse_;
+  MixtureOptions options_;
+  std::vector<Limb> limbs_;
+  std::vector<std::pair<size_t, size_t>> pairs_;  // of limbs that are alike
+  std::vector<double> acceleration_;              // [D]
+  std::vector<GaussianComponent> hypotheses_;
+  std::vector<int> parents_;
+  uint64_t steps_ = 0;
+};
+
+}  // namespace silpose

@@ -1,0 +1,123 @@
+#include "silpose/track/pose_fit.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "silpose/base/check.h"
+
+namespace silpose {
+namespace {
+
+constexpr double kFirstDamping = 1e-3, kLessDamping = 0.2, kMoreDamping = 8, kMostDamping = 1e3;
+constexpr double kLimitDeviation = 0.02;  // radians beyond a limit that cost 1
+constexpr double kSmallestGain = 0.05;    // of the cost: less ends a stage
+
+struct Point {
+  Eigen::VectorXd pose;
+  double energy = 0, prior_cost = 0, other_cost = 0;
+  Eigen::VectorXd gradient;      // of half the whole cost
+  Eigen::MatrixXd silhouette;    // hessian of E/2
+  Eigen::MatrixXd hessian;       // of half the whole cost
+  [[nodiscard]] double cost() const { return energy + prior_cost + other_cost; }
+};
+
+Point evaluate(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, const PosePrior& prior,
+               Blur blur, Eigen::VectorXd pose, double rest_weight, CoverageLikelihood::Scratch& scratch) {
+  Point point;
+  point.pose = std::move(pose);
+  NormalEquations equations =
+      likelihood.linearise(evidence, blur, {point.pose.data(), static_cast<size_t>(point.pose.size())}, scratch);
+  point.energy = equations.energy;
+  point.silhouette = std::move(equations.hessian);
+  point.gradient = std::move(equations.gradient);
+  const Eigen::VectorXd off = point.pose - prior.mean;
+  const Eigen::VectorXd pull = prior.information * off;
+  point.prior_cost = off.dot(pull);
+  point.gradient += pull;
+  point.hessian = point.silhouette + prior.information;
+  point.other_cost = add_limits(likelihood.body().skeleton, point.pose, rest_weight, point.gradient, point.hessian);
+  return point;
+}
+
+// The step scaled down, as a whole, until no DOF moves by more than allowed.
+void limit_step(const Skeleton& skeleton, const PoseFitOptions& options, Eigen::VectorXd& step) {
+  double scale = 1;
+  for (Eigen::Index d = 0; d < step.size(); ++d) {
+    const double most =
+        skeleton.dofs()[static_cast<size_t>(d)].is_translation ? options.max_translation : options.max_rotation;
+    if (std::abs(step[d]) * scale > most) scale = most / std::abs(step[d]);
+  }
+  step *= scale;
+}
+
+}  // namespace
+
+double add_limits(const Skeleton& skeleton, const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
+                  Eigen::MatrixXd& hessian) {
+  constexpr double kLimit = 1 / (kLimitDeviation * kLimitDeviation);
+  double cost = 0;
+  for (Eigen::Index d = 0; d < pose.size(); ++d) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    if (dof.is_translation || dof.is_periodic) continue;
+    const double beyond = pose[d] - std::clamp(pose[d], dof.lower, dof.upper);
+    if (beyond != 0) {
+      cost += kLimit * beyond * beyond;
+      gradient[d] += kLimit * beyond;
+      hessian(d, d) += kLimit;
+    }
+    if (rest_weight > 0 && dof.joint_idx != 0) {
+      const double half_range = 0.5 * (dof.upper - dof.lower);
+      const double weight = rest_weight / (half_range * half_range);
+      const double off = pose[d] - std::clamp(0.0, dof.lower, dof.upper);
+      cost += weight * off * off;
+      gradient[d] += weight * off;
+      hessian(d, d) += weight;
+    }
+  }
+  return cost;
+}
+
+PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, const PosePrior& prior,
+                 const Eigen::VectorXd& start, std::span<const FitStage> stages, const PoseFitOptions& options,
+                 CoverageLikelihood::Scratch& scratch) {
+  check(!stages.empty(), "fit_pose: no stage");
+  const Skeleton& skeleton = likelihood.body().skeleton;
+  PoseFit fit;
+  Point at;
+  at.pose = start;
+  for (const FitStage& stage : stages) {
+    at = evaluate(likelihood, evidence, prior, stage.blur, std::move(at.pose), options.rest_weight, scratch);
+    double damping = kFirstDamping;
+    for (int iteration = 0; iteration < stage.max_iterations && damping < kMostDamping; ++iteration) {
+      Eigen::MatrixXd damped = at.hessian;
+      damped.diagonal() *= 1 + damping;
+      damped.diagonal().array() += 1e-9;
+      Eigen::VectorXd step = -damped.ldlt().solve(at.gradient);
+      limit_step(skeleton, options, step);
+      Point next = evaluate(likelihood, evidence, prior, stage.blur, at.pose + step, options.rest_weight, scratch);
+      ++fit.num_iterations;
+      const double gain = at.cost() - next.cost();
+      if (gain > 0) {
+        at = std::move(next);
+        damping *= kLessDamping;
+      } else {
+        damping *= kMoreDamping;
+      }
+      if (std::abs(gain) < kSmallestGain) break;
+    }
+  }
+  // Exactly inside the limits, whole turns kept: a clamped DOF moves by less than the soft limit's width.
+  for (Eigen::Index d = 0; d < at.pose.size(); ++d) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    if (!dof.is_translation && !dof.is_periodic) at.pose[d] = std::clamp(at.pose[d], dof.lower, dof.upper);
+  }
+  fit.pose = std::move(at.pose);
+  fit.energy = at.energy;
+  fit.prior_cost = at.prior_cost;
+  fit.hessian = std::move(at.silhouette);
+  fit.information = std::move(at.hessian);
+  return fit;
+}
+
+}  // namespace silpose

@@ -1,0 +1,56 @@
+// fit_pose(): from a pose to the nearest best one: Gauss-Newton on the coverage likelihood, from wide blur to narrow,
+// under a Gaussian prior and soft limits.
+// Based on: Levenberg-Marquardt (references.bib: nocedal2006); the measurement step of an iterated extended Kalman
+// filter (bell1993).
+// Threads: functions without state; one Scratch per thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "silpose/likelihood/coverage_likelihood.h"
+
+namespace silpose {
+
+// cost(pose) = (pose - mean)' information (pose - mean). DOF of no information are free.
+struct PosePrior {
+  Eigen::VectorXd mean;         // [D]
+  Eigen::MatrixXd information;  // [D, D]
+};
+
+struct FitStage {
+  Blur blur = Blur::k4;
+  int max_iterations = 3;
+};
+
+// What a tracked pose needs, and one that starts far off.
+inline constexpr FitStage kTrackingStages[] = {{Blur::k8, 4}, {Blur::k4, 3}, {Blur::k2, 3}};
+inline constexpr FitStage kStartStages[] = {{Blur::k32, 4}, {Blur::k16, 5}, {Blur::k8, 5}, {Blur::k4, 4}};
+
+struct PoseFit {
+  Eigen::VectorXd pose;       // [D] within the limits
+  double energy = 0;          // E at the last stage's blur
+  double prior_cost = 0;      // of the prior alone
+  Eigen::MatrixXd hessian;    // [D, D] of E/2: the information that the silhouette gives
+  Eigen::MatrixXd information;  // [D, D] with the prior's, the limits' and the pull to rest
+  int num_iterations = 0;
+  [[nodiscard]] double cost() const { return energy + prior_cost; }
+};
+
+struct PoseFitOptions {
+  double max_rotation = 0.35;     // radians a step
+  double max_translation = 0.3;   // metres a step
+  double rest_weight = 0;         // of a pull to the rest pose, in units of (half a range)^-2
+};
+
+PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, const PosePrior& prior,
+                 const Eigen::VectorXd& start, std::span<const FitStage> stages, const PoseFitOptions& options,
+                 CoverageLikelihood::Scratch& scratch);
+
+// Information and gradient that keep a pose inside its limits, softly, and pull it to rest: adds to `gradient` [D] and
+// `hessian` [D, D] of half the cost, and returns the cost.
+double add_limits(const Skeleton& skeleton, const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
+                  Eigen::MatrixXd& hessian);
+
+}  // namespace silpose
