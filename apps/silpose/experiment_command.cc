@@ -54,7 +54,7 @@ Result<fs::path> find_description(const std::string& name) {
     known.push_back(file.stem().string());
     if (known.back() == name) return file;
   }
-  return error("{}: no such experiment ({}, or a .toml file)", name, fmt::join(known, ", "));
+  return error("{}: no such experiment ({}, all, or a .toml file)", name, fmt::join(known, ", "));
 }
 
 Result<Outcome> list_experiments(const ExperimentOptions& options) {
@@ -88,18 +88,27 @@ Result<void> check_motion_files(const Grid& grid, const fs::path& data) {
 }
 
 Result<std::vector<Grid>> read_grids(const ExperimentOptions& options) {
-  std::vector<Grid> grids;
+  std::vector<fs::path> files;
   for (const std::string& name : options.names) {
+    if (name == "all") {
+      const std::vector<fs::path> all = all_descriptions();
+      files.insert(files.end(), all.begin(), all.end());
+      continue;
+    }
     const Result<fs::path> file = find_description(name);
     if (!file) return file.failure();
-    Result<Grid> grid = read_grid(*file, options.quick);
+    files.push_back(*file);
+  }
+  std::vector<Grid> grids;
+  for (const fs::path& file : files) {
+    Result<Grid> grid = read_grid(file, options.quick);
     if (!grid) return grid.failure();
     if (options.seeds) grid->seeds = *options.seeds;
     for (const Grid& other : grids) {
       if (other.name == grid->name) throw UsageError(fmt::format("{}: is there twice", grid->name));
     }
-    const Result<void> files = check_motion_files(*grid, options.data);
-    if (!files) return files.failure();
+    const Result<void> found = check_motion_files(*grid, options.data);
+    if (!found) return found.failure();
     grids.push_back(std::move(*grid));
   }
   return grids;
@@ -156,7 +165,7 @@ Result<Outcome> run_experiments(const ExperimentOptions& options, const CommonOp
 Command add_experiment(CLI::App& program, const CommonOptions& common) {
   const auto options = std::make_shared<ExperimentOptions>();
   CLI::App* const app = program.add_subcommand("experiment", "Run experiments and write their figures");
-  app->add_option("NAME", options->names, "Experiments, as --list tells them, or .toml files that describe one");
+  app->add_option("NAME", options->names, "Experiments, as --list tells them, or all, or .toml files that describe one");
   app->add_option("--out", options->out, "Directory for the results, a folder each");
   app->add_flag("--list", options->list, "Tell the experiments there are");
   app->add_flag("--quick", options->quick, "A small part of each, to see that it works");

@@ -133,6 +133,7 @@ const std::map<std::string, Setter, std::less<>>& setters() {
       {"hypotheses", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, 10000), run.hypotheses); }},
       {"particles", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, kMost), run.particles); }},
       {"layers", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, 1000), run.layers); }},
+      {"vertices", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 0, kMost), run.vertices); }},
       {"body_height", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.5, 2), run.body_height); }},
       {"body_weight", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.3, 3), run.body_weight); }},
       {"start", [](const Entry& e, RunSettings& run) { return take_word(e, {"tracker", "truth"}, run.start); }},

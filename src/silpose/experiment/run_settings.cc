@@ -28,6 +28,7 @@ std::string settings_text(const RunSettings& settings) {
   json["hypotheses"] = optional(settings.hypotheses);
   json["particles"] = optional(settings.particles);
   json["layers"] = optional(settings.layers);
+  json["vertices"] = optional(settings.vertices);
   json["body_height"] = settings.body_height;
   json["body_weight"] = settings.body_weight;
   json["start"] = settings.start;

@@ -29,6 +29,7 @@ struct RunSettings {
   std::optional<bool> smooth;
   std::optional<int> hypotheses;
   std::optional<int> particles, layers;
+  std::optional<int> vertices;          // of the mesh that is compared; 0: all
   double body_height = 1, body_weight = 1;  // the tracker's body over the true one
   std::string start = "tracker";        // "tracker": by itself; "truth": the true first pose is given
 

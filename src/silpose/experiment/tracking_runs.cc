@@ -18,7 +18,8 @@ Result<void> choose_tracker(const RunSettings& settings, Options& options) {
   options.preset = settings.preset;
   options.num_particles = settings.particles;
   options.num_layers = settings.layers;
-  if constexpr (requires { options.hypotheses; }) options.hypotheses = settings.hypotheses;
+  if (settings.vertices) options.lod_vertices = *settings.vertices;
+  if constexpr (requires { options.num_hypotheses; }) options.num_hypotheses = settings.hypotheses;
   if constexpr (requires { options.smooth; }) options.smooth = settings.smooth;
   try {
     options.check();
@@ -150,6 +151,7 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
   sequence_only.hypotheses = defaults.hypotheses;
   sequence_only.particles = defaults.particles;
   sequence_only.layers = defaults.layers;
+  sequence_only.vertices = defaults.vertices;
   sequence_only.body_height = defaults.body_height;
   sequence_only.body_weight = defaults.body_weight;
   sequence_only.start = defaults.start;
