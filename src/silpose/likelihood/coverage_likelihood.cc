@@ -101,7 +101,8 @@ CoverageLikelihood::~CoverageLikelihood() = default;
 const BodyModel& CoverageLikelihood::body() const { return *impl_->body; }
 std::span<const PinholeCamera> CoverageLikelihood::cameras() const { return impl_->cameras; }
 
-CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observations, Blur widest) const {
+CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observations, Blur widest,
+                                             Blur narrowest) const {
   check(observations.size() == impl_->cameras.size(), "CoverageLikelihood: {} observations for {} cameras",
         observations.size(), impl_->cameras.size());
   CoverageEvidence evidence;
@@ -119,7 +120,7 @@ CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observ
     view.pixel_unit = std::max(extent / CoverageEvidence::kSubjectHeight, 0.25);
     view.outline_length = outline_length(observation.mask);
     evidence.noise.back() = kExactNoise * std::pow(view.pixel_unit, 3);
-    for (size_t b = 0; b <= static_cast<size_t>(widest); ++b) {
+    for (auto b = static_cast<size_t>(narrowest); b <= static_cast<size_t>(widest); ++b) {
       const int cell = std::max(1, static_cast<int>(std::lround(kBlurSigma[b] * view.pixel_unit)));
       view.rasters[b] = coverage_raster(observation, cell);
     }

@@ -49,6 +49,10 @@ struct CoverageEvidence {
   std::vector<double> noise;    // [C] outline variance times correlation length, px^3; may be set by the caller
 };
 
+// Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps of
+// slanting lines: isotropic outlines come out right on average). The picture's own border does not count.
+double outline_length(const Mask& mask);
+
 // E and its Gauss-Newton model: E(pose + d) = energy + 2 gradient . d + d' hessian d.
 struct NormalEquations {
   double energy = 0;
@@ -65,9 +69,10 @@ class CoverageLikelihood {
   // What exact masks deserve, in units of pixel_unit^3: the default of CoverageEvidence::noise.
   static constexpr double kExactNoise = 10;
 
-  // Shapes: one observation a camera. A camera whose observation found nothing gets no say. Only blurs up to `widest`
-  // are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit its camera.
-  [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32) const;
+  // Shapes: one observation a camera. A camera whose observation found nothing gets no say. Only blurs from
+  // `narrowest` to `widest` are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit its camera.
+  [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32,
+                                         Blur narrowest = Blur::k2) const;
 
   // What evaluations work in; one a thread.
   class Scratch {

@@ -15,10 +15,6 @@ namespace silpose {
 // REQUIRES: cell > 0.
 CoverageEvidence::Raster coverage_raster(const Observation& observation, int cell);
 
-// Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps of
-// slanting lines: isotropic outlines come out right on average). The picture's own border does not count.
-double outline_length(const Mask& mask);
-
 // D = w (C_model - C_observed) on the cells, K = G * G the blur applied twice, sigma one cell.
 class CoverageDifference {
  public:

@@ -6,6 +6,7 @@
 
 #include "silpose/base/clock.h"
 #include "silpose/filter/log_weights.h"
+#include "silpose/track/pose_estimate.h"
 
 namespace silpose {
 namespace {
@@ -77,12 +78,13 @@ void FittedFilter::estimate_noise(const CoverageEvidence& evidence) {
 FilterReport FittedFilter::report() {
   const auto hypotheses = mixture_.hypotheses();
   const Eigen::Index D = hypotheses.front().num_dofs();
-  particles_.states.resize(std::ssize(hypotheses), D);
+  particles_.states.resize(std::ssize(hypotheses), 2 * D);
   particles_.log_weights.clear();
   for (size_t i = 0; i < hypotheses.size(); ++i) {
     std::vector<double> pose(hypotheses[i].pose().begin(), hypotheses[i].pose().end());
     fine_->body().skeleton.clamp(pose);
-    particles_.states.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), D);
+    particles_.states.row(static_cast<Eigen::Index>(i)) << Eigen::Map<const Eigen::RowVectorXd>(pose.data(), D),
+        hypotheses[i].mean.tail(D).transpose();
     particles_.log_weights.push_back(hypotheses[i].log_weight);
   }
   FilterReport report;
@@ -91,7 +93,7 @@ FilterReport FittedFilter::report() {
 }
 
 std::vector<double> FittedFilter::estimate() const {
-  const auto best = particles_.states.row(0);
+  const auto best = particles_.states.row(0).head(particles_.states.cols() / 2);
   return {best.begin(), best.end()};
 }
 
@@ -106,21 +108,17 @@ PoseSpread FittedFilter::spread() const {
   spread.landmarks.assign(centre_landmarks.size(), Eigen::Vector3d::Zero());
   for (size_t i = 0; i < hypotheses.size(); ++i) {
     const auto covariance = hypotheses[i].pose_covariance();
-    const auto row = particles_.states.row(static_cast<Eigen::Index>(i));
+    const auto row = particles_.states.row(static_cast<Eigen::Index>(i)).head(std::ssize(centre));
     const std::vector<double> pose(row.begin(), row.end());
     for (size_t d = 0; d < pose.size(); ++d) {
       double off = pose[d] - centre[d];
       if (body.skeleton.dofs()[d].is_periodic) off = wrap_angle(off);
       spread.dofs[d] += weights[i] * (covariance(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(d)) + off * off);
     }
-    const auto world_from_joint = body.skeleton.forward_kinematics(pose);
     const auto landmarks = landmark_positions(body, pose);
+    const std::vector<Eigen::Vector3d> variances = landmark_variances(body, pose, covariance);
     for (size_t l = 0; l < landmarks.size(); ++l) {
-      const size_t num_joints = world_from_joint.size();
-      const int joint = l < num_joints ? static_cast<int>(l) : body.end_points[l - num_joints].joint_idx;
-      const Eigen::Matrix3Xd jacobian = body.skeleton.point_jacobian(pose, world_from_joint, joint, landmarks[l]);
-      const Eigen::Vector3d variance = (jacobian * covariance).cwiseProduct(jacobian).rowwise().sum();
-      spread.landmarks[l] += weights[i] * (variance + (landmarks[l] - centre_landmarks[l]).cwiseAbs2());
+      spread.landmarks[l] += weights[i] * (variances[l] + (landmarks[l] - centre_landmarks[l]).cwiseAbs2());
     }
   }
   for (double& variance : spread.dofs) variance = std::sqrt(variance);

@@ -26,8 +26,7 @@ class FittedFilter final : public PoseFilter {
   [[nodiscard]] PoseSpread spread() const override;
 
   [[nodiscard]] const MixtureFilter& mixture() const { return mixture_; }
-  // Outline variance times correlation length that was found, in units of pixel_unit^3. [C]
-  [[nodiscard]] std::span<const double> noise() const { return noise_; }
+  [[nodiscard]] std::vector<double> noise() const override { return noise_; }
 
  private:
   void estimate_noise(const CoverageEvidence& evidence);

@@ -42,4 +42,18 @@ std::vector<double> pose_estimate(const Skeleton& skeleton, const ParticleSet& p
   return pose;
 }
 
+std::vector<Eigen::Vector3d> landmark_variances(const BodyModel& body, std::span<const double> pose,
+                                                const Eigen::MatrixXd& covariance) {
+  const auto world_from_joint = body.skeleton.forward_kinematics(pose);
+  const auto landmarks = landmark_positions(body, pose);
+  const size_t num_joints = world_from_joint.size();
+  std::vector<Eigen::Vector3d> variances;
+  for (size_t l = 0; l < landmarks.size(); ++l) {
+    const int joint = l < num_joints ? static_cast<int>(l) : body.end_points[l - num_joints].joint_idx;
+    const Eigen::Matrix3Xd jacobian = body.skeleton.point_jacobian(pose, world_from_joint, joint, landmarks[l]);
+    variances.emplace_back((jacobian * covariance).cwiseProduct(jacobian).rowwise().sum());
+  }
+  return variances;
+}
+
 }  // namespace silpose

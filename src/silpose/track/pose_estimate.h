@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "silpose/body/skeleton.h"
+#include "silpose/body/body_model.h"
 #include "silpose/filter/particle_set.h"
 #include "silpose/track/tracker_options.h"
 
@@ -18,5 +18,9 @@ std::vector<int> periodic_dofs(const Skeleton& skeleton);
 // what counts as far in each DOF, for the cluster. REQUIRES: particles whose first D columns are poses.
 std::vector<double> pose_estimate(const Skeleton& skeleton, const ParticleSet& particles, Estimate kind,
                                   std::span<const double> scale);
+
+// Variance of each landmark's coordinates [J + E] of a pose [D] whose covariance is [D, D], to first order.
+std::vector<Eigen::Vector3d> landmark_variances(const BodyModel& body, std::span<const double> pose,
+                                                const Eigen::MatrixXd& covariance);
 
 }  // namespace silpose

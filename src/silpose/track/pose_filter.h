@@ -42,6 +42,8 @@ class PoseFilter {
   [[nodiscard]] virtual const ParticleSet& particles() const = 0;  // states [N, D' >= D]
   [[nodiscard]] virtual std::vector<double> estimate() const = 0;  // [D]
   [[nodiscard]] virtual PoseSpread spread() const = 0;
+  // Outline noise that was found, in units of pixel_unit^3 [C]; empty where a filter does not look.
+  [[nodiscard]] virtual std::vector<double> noise() const { return {}; }
 };
 
 // What filters compare with: renderers of the tracker's level of detail, one a camera, for those that sample; a fine and

@@ -1,13 +1,281 @@
 #include "silpose/track/track_clip.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 
+#include "silpose/base/clock.h"
+#include "silpose/base/parallel.h"
+#include "silpose/motion/common_poses.h"
+#include "silpose/motion/noise.h"
+#include "silpose/render/silhouette.h"
+#include "silpose/track/initialisation.h"
+#include "silpose/track/pose_estimate.h"
+#include "silpose/track/smoother.h"
 #include "silpose/track/tracker.h"
 
 namespace silpose {
+namespace {
+
+using Eigen::VectorXd;
+
+// How many instants are tried as the start, and how far apart they are at least, seconds.
+constexpr size_t kNumStarts = 3;
+constexpr double kStartsApart_s = 0.5;
+
+bool has_a_say(const ClipInstant& instant) {
+  return std::ranges::any_of(instant.observations, [](const Observation& o) {
+    return !o.trust.nothing_found && !o.box.empty() && o.trust.overall >= kLeastTrust;
+  });
+}
+
+// How much a silhouette tells of the pose: limbs that stand out make its outline long for its area.
+double clarity(const ClipInstant& instant) {
+  double sum = 0;
+  for (const Observation& o : instant.observations) {
+    if (o.trust.nothing_found || o.box.empty()) continue;
+    const double area = static_cast<double>(o.mask.count());
+    sum += o.trust.overall * (o.trust.touches_border ? 0.5 : 1) * outline_length(o.mask) / std::sqrt(area);
+  }
+  return sum;
+}
+
+// What was held possible at one instant: poses and velocities [K, 2 D] of one or more passes, in clip time.
+struct Possible {
+  std::vector<VectorXd> poses, velocities;
+  std::vector<double> energies;
+};
+
+class ClipTracker {
+ public:
+  ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress)
+      : options_(options.resolved()), clip_(clip), progress_(progress), possible_(clip.size()), seen_(clip.size()) {
+    options_.check();
+    for (size_t t = 0; t < clip.size(); ++t) seen_[t] = has_a_say(clip[t]);
+    const auto body = *options_.lod_vertices == 0
+                          ? options_.body
+                          : std::make_shared<const BodyModel>(level_of_detail(*options_.body, *options_.lod_vertices));
+    likelihood_ = std::make_shared<const CoverageLikelihood>(body, options_.cameras);
+  }
+
+  std::vector<StepReport> run() {
+    const Stopwatch stopwatch;
+    const auto first = std::ranges::find(seen_, true);
+    if (first == seen_.end()) return waiting(0, clip_.size());
+    first_ = static_cast<size_t>(first - seen_.begin());
+    last_ = clip_.size() - 1;
+    while (!seen_[last_]) --last_;
+
+    // From the clearest instant to the end, back to the beginning, and once more to the end: whatever one pass
+    // misses, another may have found.
+    const size_t start = clearest();
+    start_seconds_ = stopwatch.seconds();
+    pass(start, last_, std::nullopt);
+    pass(last_, first_, last_pose_);
+    pass(first_, last_, last_pose_);
+    if (stopped_) return {};
+    const SmoothedPoses smoothed =
+        smooth_poses(*likelihood_, clip_.subspan(first_, last_ - first_ + 1),
+                     {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
+                     best_path(), {.noise = noise_}, [&] { return proceed(); });
+    if (stopped_) return {};
+    return reports(smoothed);
+  }
+
+ private:
+  // Tells progress in passes: each instant counts when its share of the whole work is done.
+  bool proceed(double done = -1) {
+    if (done >= 0) done_ = done;
+    if (progress_ && !stopped_) {
+      stopped_ = !progress_(static_cast<size_t>(done_ * static_cast<double>(clip_.size())), clip_.size());
+    }
+    return !stopped_;
+  }
+
+  size_t clearest() {
+    if (options_.initial_pose) return first_;
+    std::vector<size_t> order;
+    std::vector<double> score(clip_.size(), 0.0);
+    for (size_t t = first_; t <= last_; ++t) {
+      if (seen_[t]) order.push_back(t), score[t] = clarity(clip_[t]);
+    }
+    std::ranges::stable_sort(order, std::greater<>{}, [&](size_t t) { return score[t]; });
+    std::vector<size_t> starts;
+    for (const size_t t : order) {
+      const bool apart = std::ranges::all_of(starts, [&](size_t other) {
+        return std::abs(static_cast<double>(clip_[t].time_ns - clip_[other].time_ns)) * 1e-9 >= kStartsApart_s;
+      });
+      if (apart) starts.push_back(t);
+      if (starts.size() == kNumStarts) break;
+    }
+    const CommonPoses common(options_.body->skeleton);
+    const Proposal& proposal = options_.proposal ? *options_.proposal : common;
+    double best = -std::numeric_limits<double>::infinity();
+    size_t chosen = starts.front();
+    for (const size_t t : starts) {
+      Rng rng(options_.seed, t);
+      const auto found = initialise(*likelihood_, clip_[t].observations,
+                                    proposal.propose(clip_[t].observations.front(), 0, rng));
+      if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
+    }
+    return chosen;
+  }
+
+  // Tracks from one instant to another, backwards where that lies before, and keeps all hypotheses.
+  void pass(size_t from, size_t to, const std::optional<std::vector<double>>& pose) {
+    TrackerOptions options = options_;
+    if (pose) options.initial_pose = pose;
+    Tracker tracker(options);
+    const double direction = to >= from ? 1 : -1;
+    const size_t count = (to >= from ? to - from : from - to) + 1;
+    const double share = kPassShare * static_cast<double>(count) / static_cast<double>(clip_.size());
+    const double done_before = done_;
+    const auto D = static_cast<Eigen::Index>(options_.body->skeleton.num_dofs());
+    for (size_t i = 0; i < count; ++i) {
+      const size_t t = to >= from ? from + i : from - i;
+      const ClipInstant& instant = clip_[t];
+      const int64_t time = to >= from ? instant.time_ns - clip_[from].time_ns : clip_[from].time_ns - instant.time_ns;
+      const StepReport report = tracker.step(instant.observations, instant.frame_idx, time);
+      if (report.pose.empty()) continue;
+      last_pose_ = report.pose;
+      const StateBatch& states = tracker.particles();
+      for (Eigen::Index k = 0; k < states.rows(); ++k) {
+        possible_[t].poses.emplace_back(states.row(k).head(D).transpose());
+        possible_[t].velocities.emplace_back(direction * states.row(k).tail(D).transpose());
+      }
+      if (!proceed(done_before + share * static_cast<double>(i + 1) / static_cast<double>(count))) return;
+    }
+    noise_ = tracker.noise();
+  }
+
+  // Of all that was held possible, the sequence that fits best and moves most plausibly. Source: Viterbi's algorithm.
+  std::vector<VectorXd> best_path() {
+    const Skeleton& skeleton = options_.body->skeleton;
+    std::vector<double> scale = acceleration_deviation(skeleton);
+    for (double& deviation : scale) deviation *= kTransitionScale;
+    parallel_for(last_ - first_ + 1, 4, [&](size_t begin, size_t end) {
+      CoverageLikelihood::Scratch scratch(*likelihood_);
+      for (size_t i = begin; i < end; ++i) {
+        Possible& possible = possible_[first_ + i];
+        possible.energies.assign(possible.poses.size(), 0.0);
+        if (!seen_[first_ + i]) continue;
+        const CoverageEvidence evidence = likelihood_->prepare(clip_[first_ + i].observations, Blur::k4, Blur::k4);
+        for (size_t k = 0; k < possible.poses.size(); ++k) {
+          const VectorXd& pose = possible.poses[k];
+          possible.energies[k] =
+              likelihood_->energy(evidence, Blur::k4, {pose.data(), static_cast<size_t>(pose.size())}, scratch);
+        }
+      }
+    });
+    const auto transition = [&](size_t t, size_t from, size_t to) {
+      const double dt = static_cast<double>(clip_[t + 1].time_ns - clip_[t].time_ns) * 1e-9;
+      const VectorXd velocity = 0.5 * (possible_[t].velocities[from] + possible_[t + 1].velocities[to]);
+      double cost = 0;
+      for (Eigen::Index d = 0; d < velocity.size(); ++d) {
+        double off = possible_[t + 1].poses[to][d] - possible_[t].poses[from][d] - dt * velocity[d];
+        if (skeleton.dofs()[static_cast<size_t>(d)].is_periodic) off = wrap_angle(off);
+        const double ratio = off / scale[static_cast<size_t>(d)];
+        cost += std::min(ratio * ratio, kTransitionCap);
+      }
+      return cost;
+    };
+    std::vector<std::vector<double>> cost(last_ + 1);
+    std::vector<std::vector<size_t>> best(last_ + 1);
+    for (size_t t = first_; t <= last_; ++t) {
+      const size_t count = possible_[t].poses.size();
+      cost[t].assign(possible_[t].energies.begin(), possible_[t].energies.end());
+      best[t].assign(count, 0);
+      if (t == first_) continue;
+      for (size_t k = 0; k < count; ++k) {
+        double least = std::numeric_limits<double>::infinity();
+        for (size_t j = 0; j < cost[t - 1].size(); ++j) {
+          const double value = cost[t - 1][j] + transition(t - 1, j, k);
+          if (value < least) least = value, best[t][k] = j;
+        }
+        cost[t][k] += least;
+      }
+    }
+    std::vector<VectorXd> path(last_ - first_ + 1);
+    size_t k = static_cast<size_t>(std::ranges::min_element(cost[last_]) - cost[last_].begin());
+    for (size_t t = last_;; --t) {
+      path[t - first_] = possible_[t].poses[k];
+      if (t == first_) break;
+      k = best[t][k];
+    }
+    return path;
+  }
+
+  std::vector<StepReport> waiting(size_t from, size_t to) const {
+    std::vector<StepReport> reports;
+    for (size_t t = from; t < to; ++t) reports.push_back(report_at(t));
+    return reports;
+  }
+
+  StepReport report_at(size_t t) const {
+    StepReport report{.frame_idx = clip_[t].frame_idx, .time_ns = clip_[t].time_ns};
+    for (const Observation& observation : clip_[t].observations) {
+      report.trust.push_back(observation.trust);
+      report.observed.push_back(observation.mask);
+    }
+    return report;
+  }
+
+  std::vector<StepReport> reports(const SmoothedPoses& smoothed) const {
+    const BodyModel& body = *options_.body;
+    std::vector<StepReport> reports = waiting(0, clip_.size());
+    parallel_for(smoothed.poses.size(), 4, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        StepReport& report = reports[first_ + i];
+        report.pose.assign(smoothed.poses[i].begin(), smoothed.poses[i].end());
+        body.skeleton.clamp(report.pose);
+        report.mode = report.pose;
+        for (Eigen::Index d = 0; d < smoothed.poses[i].size(); ++d) {
+          report.spread.push_back(std::sqrt(std::max(smoothed.covariances[i](d, d), 0.0)));
+        }
+        for (const Eigen::Vector3d& variance : landmark_variances(body, report.pose, smoothed.covariances[i])) {
+          report.landmark_spread.emplace_back(variance.cwiseMax(0).cwiseSqrt());
+        }
+        report.effective_sample_size = 1;
+        report.state = i == 0                ? StepReport::State::kInitialised
+                       : seen_[first_ + i]   ? StepReport::State::kTracked
+                                             : StepReport::State::kCoasted;
+        if (!seen_[first_ + i]) continue;
+        for (size_t c = 0; c < options_.cameras.size(); ++c) {
+          if (report.trust[c].nothing_found) continue;
+          const Mask drawn = render_silhouette(body, options_.cameras[c], report.pose);
+          report.visual_accuracy = intersection_over_union(drawn, report.observed[c]);
+          break;
+        }
+      }
+    });
+    reports[first_].seconds.start = start_seconds_;
+    return reports;
+  }
+
+  static constexpr double kPassShare = 0.35;      // of the whole work, one pass over the whole clip
+  static constexpr double kTransitionScale = 4;   // times acceleration_deviation: hypotheses are fits, not truths
+  static constexpr double kTransitionCap = 30;    // of one DOF
+
+  TrackerOptions options_;
+  std::span<const ClipInstant> clip_;
+  const ClipProgress& progress_;
+  std::shared_ptr<const CoverageLikelihood> likelihood_;
+  std::vector<Possible> possible_;  // [T]
+  std::vector<bool> seen_;          // [T]
+  std::vector<double> last_pose_, noise_;
+  size_t first_ = 0, last_ = 0;
+  double done_ = 0, start_seconds_ = 0;
+  bool stopped_ = false;
+};
+
+}  // namespace
 
 std::vector<StepReport> track_clip(const TrackerOptions& options, std::span<const ClipInstant> clip,
                                    const ClipProgress& progress) {
+  const TrackerOptions resolved = options.resolved();
+  if (*resolved.smooth && !clip.empty()) return ClipTracker(options, clip, progress).run();
   Tracker tracker(options);
   std::vector<StepReport> reports;
   reports.reserve(clip.size());

@@ -16,8 +16,6 @@
 namespace silpose {
 namespace {
 
-// A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm.
-constexpr double kLeastTrust = 0.3;
 // The mesh that candidates are ranked by.
 constexpr int kRankingVertices = 800, kRankingRows = 1;
 // After coasting for longer than this the subject may be anywhere: the next good mask starts over.
@@ -151,5 +149,7 @@ StepReport Tracker::step(const Frame& frame) {
 const TrackerOptions& Tracker::options() const { return impl_->options; }
 const StateBatch& Tracker::particles() const { return impl_->filter->particles().states; }
 std::span<const double> Tracker::log_weights() const { return impl_->filter->particles().log_weights; }
+
+std::vector<double> Tracker::noise() const { return impl_->filter->noise(); }
 
 }  // namespace silpose

@@ -16,6 +16,9 @@
 
 namespace silpose {
 
+// A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm.
+inline constexpr double kLeastTrust = 0.3;
+
 class Tracker {
  public:
   // Errors: throws std::invalid_argument as TrackerOptions::check().
@@ -32,9 +35,12 @@ class Tracker {
   StepReport step(const Frame& frame);
 
   [[nodiscard]] const TrackerOptions& options() const;  // with everything unset filled in
-  // The current particles [N, D] and their log weights [N].
+  // The current particles [N, D' >= D] and their log weights [N]. Those of fitted hypotheses are poses, then velocities
+  // per second: D' = 2 D.
   [[nodiscard]] const StateBatch& particles() const;
   [[nodiscard]] std::span<const double> log_weights() const;
+  // Outline noise that the fitted filter found, in units of pixel_unit^3 (likelihood/coverage_likelihood.h). [C], or empty.
+  [[nodiscard]] std::vector<double> noise() const;
 
  private:
   struct Impl;
