@@ -66,8 +66,8 @@ Result<Outcome> list_experiments(const ExperimentOptions& options) {
     if (!grid) return grid.failure();
     const size_t runs = grid->cells.size() * static_cast<size_t>(options.seeds.value_or(grid->seeds));
     outcome.json["experiments"].push_back({{"name", grid->name}, {"title", grid->title}, {"runs", runs}});
-    outcome.text += fmt::format("{}{:18} {:5} runs  {}", outcome.text.empty() ? "" : "\n", grid->name, runs,
-                                grid->title);
+    outcome.text +=
+        fmt::format("{}{:18} {:5} runs  {}", outcome.text.empty() ? "" : "\n", grid->name, runs, grid->title);
   }
   if (outcome.text.empty()) return error("{}: no experiments", description_folder().string());
   return outcome;
@@ -134,8 +134,8 @@ Result<Outcome> run_experiments(const ExperimentOptions& options, const CommonOp
   };
   std::vector<std::string> names;
   for (const Grid& grid : *grids) {
-    const auto runs = run_grid(grid, {.first_seed = common.seed, .seeds = grid.seeds}, directory->path(grid.name),
-                               runner, &console);
+    const auto runs =
+        run_grid(grid, {.first_seed = common.seed, .seeds = grid.seeds}, directory->path(grid.name), runner, &console);
     if (!runs) return error("{} (finished runs are in {}.partial, for --resume)", runs.error().message, options.out);
     if (!*runs) {
       outcome.interrupted = true;
@@ -165,7 +165,8 @@ Result<Outcome> run_experiments(const ExperimentOptions& options, const CommonOp
 Command add_experiment(CLI::App& program, const CommonOptions& common) {
   const auto options = std::make_shared<ExperimentOptions>();
   CLI::App* const app = program.add_subcommand("experiment", "Run experiments and write their figures");
-  app->add_option("NAME", options->names, "Experiments, as --list tells them, or all, or .toml files that describe one");
+  app->add_option("NAME", options->names,
+                  "Experiments, as --list tells them, or all, or .toml files that describe one");
   app->add_option("--out", options->out, "Directory for the results, a folder each");
   app->add_flag("--list", options->list, "Tell the experiments there are");
   app->add_flag("--quick", options->quick, "A small part of each, to see that it works");

@@ -29,22 +29,22 @@ struct TableDescription {
   std::vector<std::string> rows;     // axes: one row a combination of their labels
   std::vector<std::string> columns;  // axes: the figures again for each combination of theirs
   std::vector<std::string> figures;
-  std::string family;                // one row also for each score "FAMILY/MEMBER", with its mean; instead of figures
-  std::string beside;                // CSV beside the description: columns to join by those that are named as `rows`
-  bool mean_row = false;             // a last row over all
+  std::string family;     // one row also for each score "FAMILY/MEMBER", with its mean; instead of figures
+  std::string beside;     // CSV beside the description: columns to join by those that are named as `rows`
+  bool mean_row = false;  // a last row over all
 };
 
 // Bars: x is an axis. Lines: x is "frame", and `figure` a column of the runs' frames.
 struct PlotDescription {
   std::string name, title, x, series, figure, label;
-  std::vector<std::string> beside;   // of bars: columns of the first table's CSV beside it, drawn too
+  std::vector<std::string> beside;  // of bars: columns of the first table's CSV beside it, drawn too
 };
 
 struct Grid {
   std::string name, title;
-  std::filesystem::path folder;      // of the description
+  std::filesystem::path folder;  // of the description
   int seeds = 5;
-  std::vector<GridAxis> axes;        // [A] outermost first
+  std::vector<GridAxis> axes;  // [A] outermost first
   std::vector<GridCell> cells;
   std::vector<TableDescription> tables;  // the first is the main one
   std::vector<PlotDescription> plots;

@@ -1,158 +1,17 @@
-#include <toml++/toml.h>
-
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <functional>
-#include <map>
+#include <optional>
 #include <set>
 #include <string_view>
 
 #include "silpose/base/text_file.h"
 #include "silpose/experiment/grid.h"
+#include "silpose/experiment/toml_entry.h"
 
 namespace silpose {
 namespace {
 
 using Texts = std::vector<std::string>;
-
-// A value of the file and the words that name it in errors.
-struct Entry {
-  const toml::node& node;
-  std::string where;  // "grid.toml: run.frames"
-};
-
-Result<std::string> text_of(const Entry& entry) {
-  if (const auto text = entry.node.value_exact<std::string>()) return *text;
-  return error("{}: a text is wanted", entry.where);
-}
-
-Result<bool> flag_of(const Entry& entry) {
-  if (const auto flag = entry.node.value_exact<bool>()) return *flag;
-  return error("{}: true or false is wanted", entry.where);
-}
-
-Result<double> number_of(const Entry& entry, double low, double high) {
-  if (const auto value = entry.node.is_number() ? entry.node.value<double>() : std::nullopt) {
-    if (std::isfinite(*value) && *value >= low && *value <= high) return *value;
-  }
-  return error("{}: a number from {:g} to {:g} is wanted", entry.where, low, high);
-}
-
-Result<int> integer_of(const Entry& entry, int low, int high) {
-  if (const auto value = entry.node.value_exact<int64_t>(); value && *value >= low && *value <= high) {
-    return static_cast<int>(*value);
-  }
-  return error("{}: a whole number from {} to {} is wanted", entry.where, low, high);
-}
-
-Result<Texts> texts_of(const Entry& entry) {
-  const toml::array* const array = entry.node.as_array();
-  if (array == nullptr) return error("{}: a list of texts is wanted", entry.where);
-  Texts texts;
-  for (const toml::node& element : *array) {
-    const auto text = element.value_exact<std::string>();
-    if (!text) return error("{}: a list of texts is wanted", entry.where);
-    texts.push_back(*text);
-  }
-  return texts;
-}
-
-Result<std::array<double, 2>> pair_of(const Entry& entry, double low, double high) {
-  const toml::array* const array = entry.node.as_array();
-  if (array == nullptr || array->size() != 2) return error("{}: two numbers are wanted", entry.where);
-  std::array<double, 2> pair{};
-  for (size_t i = 0; i < 2; ++i) {
-    const Result<double> number = number_of({(*array)[i], entry.where}, low, high);
-    if (!number) return number.failure();
-    pair[i] = *number;
-  }
-  return pair;
-}
-
-// Takes a value over when it was read.
-template <class T, class U>
-Result<void> take(const Result<T>& read, U& into) {
-  if (!read) return read.failure();
-  into = *read;
-  return {};
-}
-
-Result<void> take_word(const Entry& entry, std::initializer_list<std::string_view> words, std::string& into) {
-  const Result<std::string> text = text_of(entry);
-  if (!text) return text.failure();
-  if (std::find(words.begin(), words.end(), *text) == words.end()) {
-    return error("{}: '{}' is not one of {}", entry.where, *text, fmt::join(words, ", "));
-  }
-  into = *text;
-  return {};
-}
-
-constexpr int kMost = 1'000'000;
-using Setter = std::function<Result<void>(const Entry&, RunSettings&)>;
-
-Result<void> set_size(const Entry& entry, RunSettings& run) {
-  const auto size = pair_of(entry, 16, 8192);
-  if (!size) return size.failure();
-  run.width = static_cast<int>((*size)[0]);
-  run.height = static_cast<int>((*size)[1]);
-  return {};
-}
-
-// One view, as an axis of plain values gives it.
-Result<void> set_view(const Entry& entry, RunSettings& run) {
-  const Result<std::string> view = text_of(entry);
-  if (!view) return view.failure();
-  run.views = {*view};
-  return {};
-}
-
-const std::map<std::string, Setter, std::less<>>& setters() {
-  static const std::map<std::string, Setter, std::less<>> kSetters = {
-      {"model", [](const Entry& e, RunSettings& run) { return take(text_of(e), run.model); }},
-      {"motion", [](const Entry& e, RunSettings& run) { return take(text_of(e), run.motion); }},
-      {"frames", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 0, kMost), run.frames); }},
-      {"fps", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.1, 10000), run.fps); }},
-      {"amplitude_deg",
-       [](const Entry& e, RunSettings& run) { return take(number_of(e, 0, 180), run.amplitude_deg); }},
-      {"period_s", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.01, 1e6), run.period_s); }},
-      {"range", [](const Entry& e, RunSettings& run) { return take(pair_of(e, -1000, 1000), run.range); }},
-      {"views", [](const Entry& e, RunSettings& run) { return take(texts_of(e), run.views); }},
-      {"view", set_view},
-      {"size", set_size},
-      {"focal_px", [](const Entry& e, RunSettings& run) { return take(number_of(e, 1, 1e6), run.focal_px); }},
-      {"distance_m", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.5, 200), run.distance_m); }},
-      {"mask_noise",
-       [](const Entry& e, RunSettings& run) {
-         return take_word(e, {"none", "shadow", "edge", "limb", "hole"}, run.mask_noise);
-       }},
-      {"mask_iou", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.05, 0.999), run.mask_iou); }},
-      {"preset",
-       [](const Entry& e, RunSettings& run) { return take_word(e, {"default", "accurate", "thesis"}, run.preset); }},
-      {"smooth", [](const Entry& e, RunSettings& run) { return take(flag_of(e), run.smooth); }},
-      {"hypotheses", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, 10000), run.hypotheses); }},
-      {"particles", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, kMost), run.particles); }},
-      {"layers", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 1, 1000), run.layers); }},
-      {"vertices", [](const Entry& e, RunSettings& run) { return take(integer_of(e, 0, kMost), run.vertices); }},
-      {"body_height", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.5, 2), run.body_height); }},
-      {"body_weight", [](const Entry& e, RunSettings& run) { return take(number_of(e, 0.3, 3), run.body_weight); }},
-      {"start", [](const Entry& e, RunSettings& run) { return take_word(e, {"tracker", "truth"}, run.start); }},
-  };
-  return kSetters;
-}
-
-// Applies every key of a table but `except`.
-Result<void> apply(const toml::table& table, const std::string& where, RunSettings& run, std::string_view except = "") {
-  for (const auto& [key, node] : table) {
-    if (key.str() == except) continue;
-    const Entry entry{node, fmt::format("{}.{}", where, key.str())};
-    const auto setter = setters().find(key.str());
-    if (setter == setters().end()) return error("{}: no such setting", entry.where);
-    const Result<void> set = setter->second(entry, run);
-    if (!set) return set.failure();
-  }
-  return {};
-}
+using Entry = TomlEntry;
 
 // One point of an axis: its label, and what it sets.
 struct AxisValue {
@@ -212,8 +71,8 @@ Result<void> keep_only(const toml::table& chosen, const std::string& file, std::
     if (!labels) return labels.failure();
     std::vector<AxisValue> kept;
     for (const std::string& label : *labels) {
-      const auto value = std::find_if(axis->values.begin(), axis->values.end(),
-                                      [&](const AxisValue& v) { return v.label == label; });
+      const auto value =
+          std::find_if(axis->values.begin(), axis->values.end(), [&](const AxisValue& v) { return v.label == label; });
       if (value == axis->values.end()) return error("{}: the axis has no '{}'", entry.where, label);
       kept.push_back(*value);
     }
@@ -238,7 +97,7 @@ Result<void> make_cells(const std::vector<Axis>& axes, const toml::table* last, 
         GridCell next = cell;
         next.labels.push_back(value.label);
         const std::string where = fmt::format("{}: axis '{}', '{}'", file, axis.name, value.label);
-        const Result<void> applied = apply(value.settings, where, next.settings);
+        const Result<void> applied = apply_settings(value.settings, where, next.settings);
         if (!applied) return applied.failure();
         longer.push_back(std::move(next));
       }
@@ -247,7 +106,7 @@ Result<void> make_cells(const std::vector<Axis>& axes, const toml::table* last, 
   }
   if (last != nullptr) {
     for (GridCell& cell : cells) {
-      const Result<void> applied = apply(*last, file + ": quick.run", cell.settings);
+      const Result<void> applied = apply_settings(*last, file + ": quick.run", cell.settings);
       if (!applied) return applied.failure();
     }
   }
@@ -257,8 +116,8 @@ Result<void> make_cells(const std::vector<Axis>& axes, const toml::table* last, 
 
 Result<void> check_axes_named(const Texts& names, const Grid& grid, const std::string& where) {
   for (const std::string& name : names) {
-    const bool known = std::any_of(grid.axes.begin(), grid.axes.end(),
-                                   [&](const GridAxis& axis) { return axis.name == name; });
+    const bool known =
+        std::any_of(grid.axes.begin(), grid.axes.end(), [&](const GridAxis& axis) { return axis.name == name; });
     if (!known) return error("{}: no axis '{}'", where, name);
   }
   return {};
@@ -269,12 +128,18 @@ Result<TableDescription> read_table(const toml::table& table, const Grid& grid, 
   for (const auto& [key, node] : table) {
     const Entry entry{node, fmt::format("{}: table.{}", file, key.str())};
     Result<void> taken;
-    if (key == "name") taken = take(text_of(entry), description.name);
-    else if (key == "title") taken = take(text_of(entry), description.title);
-    else if (key == "family") taken = take(text_of(entry), description.family);
-    else if (key == "beside") taken = take(text_of(entry), description.beside);
-    else if (key == "mean_row") taken = take(flag_of(entry), description.mean_row);
-    else if (key == "figures") taken = take(texts_of(entry), description.figures);
+    if (key == "name")
+      taken = take(text_of(entry), description.name);
+    else if (key == "title")
+      taken = take(text_of(entry), description.title);
+    else if (key == "family")
+      taken = take(text_of(entry), description.family);
+    else if (key == "beside")
+      taken = take(text_of(entry), description.beside);
+    else if (key == "mean_row")
+      taken = take(flag_of(entry), description.mean_row);
+    else if (key == "figures")
+      taken = take(texts_of(entry), description.figures);
     else if (key == "rows" || key == "columns") {
       Texts& axes = key == "rows" ? description.rows : description.columns;
       taken = take(texts_of(entry), axes);
@@ -299,18 +164,26 @@ Result<PlotDescription> read_plot(const toml::table& table, const Grid& grid, co
   for (const auto& [key, node] : table) {
     const Entry entry{node, fmt::format("{}: plot.{}", file, key.str())};
     Result<void> taken;
-    if (key == "name") taken = take(text_of(entry), plot.name);
-    else if (key == "title") taken = take(text_of(entry), plot.title);
-    else if (key == "x") taken = take(text_of(entry), plot.x);
-    else if (key == "series") taken = take(text_of(entry), plot.series);
-    else if (key == "figure") taken = take(text_of(entry), plot.figure);
-    else if (key == "label") taken = take(text_of(entry), plot.label);
-    else if (key == "beside") taken = take(texts_of(entry), plot.beside);
-    else taken = error("{}: no such key", entry.where);
+    if (key == "name")
+      taken = take(text_of(entry), plot.name);
+    else if (key == "title")
+      taken = take(text_of(entry), plot.title);
+    else if (key == "x")
+      taken = take(text_of(entry), plot.x);
+    else if (key == "series")
+      taken = take(text_of(entry), plot.series);
+    else if (key == "figure")
+      taken = take(text_of(entry), plot.figure);
+    else if (key == "label")
+      taken = take(text_of(entry), plot.label);
+    else if (key == "beside")
+      taken = take(texts_of(entry), plot.beside);
+    else
+      taken = error("{}: no such key", entry.where);
     if (!taken) return taken.failure();
   }
-  for (const auto& [word, text] : {std::pair<const char*, std::string>{"name", plot.name}, {"x", plot.x},
-                                   {"figure", plot.figure}}) {
+  for (const auto& [word, text] :
+       {std::pair<const char*, std::string>{"name", plot.name}, {"x", plot.x}, {"figure", plot.figure}}) {
     if (text.empty()) return error("{}: plot.{}: is missing", file, word);
   }
   const std::string where = fmt::format("{}: plot '{}'", file, plot.name);
@@ -391,7 +264,8 @@ Result<Grid> read_grid(const std::filesystem::path& path, bool quick_wanted) {
       taken = take(integer_of(entry, 1, 10000), grid.seeds);
     } else if (key == "run") {
       const toml::table* const run = node.as_table();
-      taken = run == nullptr ? Result<void>(error("{}: a table is wanted", entry.where)) : apply(*run, entry.where, base);
+      taken = run == nullptr ? Result<void>(error("{}: a table is wanted", entry.where))
+                             : apply_settings(*run, entry.where, base);
     } else if (key != "axis" && key != "table" && key != "plot" && key != "quick") {
       taken = error("{}: no such key", entry.where);
     }

@@ -67,12 +67,13 @@ TEST(MakeTable, FiguresAreMeanAndPopulationDeviationOverRuns) {
 }
 
 TEST(MakeTable, OtherAxesAreTakenTogetherAndTheWorstIsFound) {
-  const ResultTable table = table_of(
-      {.name = "t", .rows = {"clip"}, .figures = {"joint_error_mm", "joint_error_mm:max", "joint_error_mm:median"},
-       .mean_row = true});
+  const ResultTable table = table_of({.name = "t",
+                                      .rows = {"clip"},
+                                      .figures = {"joint_error_mm", "joint_error_mm:max", "joint_error_mm:median"},
+                                      .mean_row = true});
   EXPECT_DOUBLE_EQ(summary_at(table, 0, 1).mean, 7);  // 1 3 11 13
   EXPECT_EQ(std::get<double>(table.rows[1][2]), 33);
-  EXPECT_EQ(std::get<double>(table.rows[1][3]), 27);   // of 22 and 32
+  EXPECT_EQ(std::get<double>(table.rows[1][3]), 27);  // of 22 and 32
   EXPECT_EQ(std::get<std::string>(table.rows[2][0]), "mean");
   EXPECT_DOUBLE_EQ(summary_at(table, 2, 1).mean, 17);
 }
@@ -80,8 +81,8 @@ TEST(MakeTable, OtherAxesAreTakenTogetherAndTheWorstIsFound) {
 TEST(MakeTable, ColumnsByAnAxisAndFamilies) {
   const ResultTable table =
       table_of({.name = "t", .rows = {"clip"}, .columns = {"view"}, .figures = {"joint_error_mm", "no_such"}});
-  EXPECT_THAT(table.columns, ElementsAre("clip", "side_joint_error_mm", "side_no_such", "front_joint_error_mm",
-                                         "front_no_such"));
+  EXPECT_THAT(table.columns,
+              ElementsAre("clip", "side_joint_error_mm", "side_no_such", "front_joint_error_mm", "front_no_such"));
   EXPECT_DOUBLE_EQ(summary_at(table, 1, 3).mean, 32);
   EXPECT_EQ(table.rows[1][4].index(), 0u);
 
@@ -114,8 +115,7 @@ TEST(MakeTable, JoinsNumbersThatStandBeside) {
 }
 
 TEST(MakeTable, UnknownHowIsAnError) {
-  const auto table =
-      make_table(walk_grid(), {.name = "t", .rows = {}, .figures = {"lost:often"}}, walk_runs());
+  const auto table = make_table(walk_grid(), {.name = "t", .rows = {}, .figures = {"lost:often"}}, walk_runs());
   ASSERT_FALSE(table.ok());
   EXPECT_THAT(table.error().message, HasSubstr("lost:often"));
 }
@@ -138,9 +138,9 @@ TEST(WriteResults, FilesHoldFiguresTablesAndPlots) {
   Grid grid = walk_grid();
   grid.plots = {{.name = "bars", .title = "a < b", .x = "clip", .series = "view", .figure = "joint_error_mm"},
                 {.name = "lines", .x = "frame", .figure = "iou"}};
-  const auto written = write_results(folder, grid, walk_runs(),
-                                     {.command = "silpose experiment walks", .commit = "abc", .machine = "this", .seed = 1,
-                                      .seeds = 2});
+  const auto written =
+      write_results(folder, grid, walk_runs(),
+                    {.command = "silpose experiment walks", .commit = "abc", .machine = "this", .seed = 1, .seeds = 2});
   ASSERT_TRUE(written.ok()) << written.error().message;
   const Json json = Json::parse(read_text_file(folder / "results.json").value());
   EXPECT_EQ(json["name"], "walks");

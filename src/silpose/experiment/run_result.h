@@ -17,9 +17,9 @@ namespace silpose {
 struct RunResult {
   // "joint_error_mm" or "FAMILY/MEMBER"; one that there is no number for is left out.
   std::map<std::string, double> scores;
-  std::vector<std::string> frame_columns;     // the first is "frame"
-  std::vector<std::vector<double>> frames;    // [T][columns]; NaN: no value
-  double wall_s = 0;                          // all of the run, not only the tracker
+  std::vector<std::string> frame_columns;   // the first is "frame"
+  std::vector<std::vector<double>> frames;  // [T][columns]; NaN: no value
+  double wall_s = 0;                        // all of the run, not only the tracker
 };
 
 // The unit of a score by the ending of its name: "mm", "px", "deg", "NPSU", "frames/s", "s"; "1" for the rest.

@@ -12,26 +12,26 @@ namespace silpose {
 
 struct RunSettings {
   // The sequence.
-  std::string model = "human";          // the body that is seen
-  std::string motion = "static";        // synth/motion_source.h; one with a file extension lies under the data folder
-  int frames = 0;                       // 0: all of a file, 80 of any other motion
+  std::string model = "human";    // the body that is seen
+  std::string motion = "static";  // synth/motion_source.h; one with a file extension lies under the data folder
+  int frames = 0;                 // 0: all of a file, 80 of any other motion
   double fps = 30;
   std::optional<double> amplitude_deg, period_s;
   std::optional<std::array<double, 2>> range;  // of a dof: motion, m or degrees, in place of the DOF's limits
   std::vector<std::string> views = {"front"};  // one camera each
-  int width = 640, height = 480;        // pixels
+  int width = 640, height = 480;               // pixels
   double focal_px = 700, distance_m = 5.5;
   // The masks.
-  std::string mask_noise = "none";      // synth/degraded_mask.h: none, shadow, edge, limb, hole
-  double mask_iou = 0.9;                // of edge: with the true masks, on average
+  std::string mask_noise = "none";  // synth/degraded_mask.h: none, shadow, edge, limb, hole
+  double mask_iou = 0.9;            // of edge: with the true masks, on average
   // The tracker.
   std::string preset = "default";
   std::optional<bool> smooth;
   std::optional<int> hypotheses;
   std::optional<int> particles, layers;
-  std::optional<int> vertices;          // of the mesh that is compared; 0: all
+  std::optional<int> vertices;              // of the mesh that is compared; 0: all
   double body_height = 1, body_weight = 1;  // the tracker's body over the true one
-  std::string start = "tracker";        // "tracker": by itself; "truth": the true first pose is given
+  std::string start = "tracker";            // "tracker": by itself; "truth": the true first pose is given
 
   bool operator==(const RunSettings&) const = default;
 };

@@ -111,7 +111,8 @@ void add_coverage(const SyntheticSequence& truth, const BodyModel& body, std::sp
       dof_errors(t, d) = difference[static_cast<size_t>(d)];
       dof_spreads(t, d) = report.spread[static_cast<size_t>(d)];
     }
-    const auto positions = landmark_positions(body, report.pose), true_positions = landmark_positions(*truth.body, true_pose);
+    const auto positions = landmark_positions(body, report.pose),
+               true_positions = landmark_positions(*truth.body, true_pose);
     for (size_t i = 0; i < names.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(3 * i);
       joint_errors.block<1, 3>(t, column) = (positions[i] - true_positions[i]).transpose();

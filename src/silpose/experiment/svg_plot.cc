@@ -22,10 +22,18 @@ std::string escaped(const std::string& text) {
   std::string safe;
   for (const char c : text) {
     switch (c) {
-      case '&': safe += "&amp;"; break;
-      case '<': safe += "&lt;"; break;
-      case '>': safe += "&gt;"; break;
-      case '"': safe += "&quot;"; break;
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
       default:
         if (static_cast<unsigned char>(c) >= 0x20) safe += c;
     }
@@ -101,8 +109,11 @@ std::string lines(const SvgPlot& plot, const Scale& x_of, const Scale& y_of) {
         pen_down = false;
         continue;
       }
-      path += fmt::format("{}{:.1f} {:.1f}", pen_down ? " L" : path.empty() ? "M" : " M", x_of(series.x[i]),
-                          y_of(series.y[i]));
+      path += fmt::format("{}{:.1f} {:.1f}",
+                          pen_down       ? " L"
+                          : path.empty() ? "M"
+                                         : " M",
+                          x_of(series.x[i]), y_of(series.y[i]));
       pen_down = true;
     }
     if (path.empty()) continue;

@@ -87,8 +87,9 @@ TEST(SvgPlot, NothingToDrawIsStillAPicture) {
 TEST(RoundTicks, CoverTheRange) {
   EXPECT_THAT(round_ticks(0, 30), ElementsAre(DoubleEq(0), DoubleEq(5), DoubleEq(10), DoubleEq(15), DoubleEq(20),
                                               DoubleEq(25), DoubleEq(30)));
-  EXPECT_THAT(round_ticks(0, 0.47), ElementsAre(DoubleEq(0), DoubleNear(0.1, 1e-12), DoubleNear(0.2, 1e-12),
-                                                DoubleNear(0.3, 1e-12), DoubleNear(0.4, 1e-12), DoubleNear(0.5, 1e-12)));
+  EXPECT_THAT(round_ticks(0, 0.47),
+              ElementsAre(DoubleEq(0), DoubleNear(0.1, 1e-12), DoubleNear(0.2, 1e-12), DoubleNear(0.3, 1e-12),
+                          DoubleNear(0.4, 1e-12), DoubleNear(0.5, 1e-12)));
   EXPECT_THAT(round_ticks(-7, 5, 3), ElementsAre(DoubleEq(-10), DoubleEq(-5), DoubleEq(0), DoubleEq(5)));
   EXPECT_THAT(round_ticks(0, 0), ElementsAre(DoubleEq(0), DoubleEq(0.2), DoubleEq(0.4), DoubleNear(0.6, 1e-12),
                                              DoubleEq(0.8), DoubleEq(1)));

@@ -13,14 +13,13 @@ namespace silpose {
 namespace {
 
 // The one place that turns settings into options of the tracker. Errors: an option that it does not have.
-template <class Options>
-Result<void> choose_tracker(const RunSettings& settings, Options& options) {
+Result<void> choose_tracker(const RunSettings& settings, TrackerOptions& options) {
   options.preset = settings.preset;
   options.num_particles = settings.particles;
   options.num_layers = settings.layers;
-  if (settings.vertices) options.lod_vertices = *settings.vertices;
-  if constexpr (requires { options.num_hypotheses; }) options.num_hypotheses = settings.hypotheses;
-  if constexpr (requires { options.smooth; }) options.smooth = settings.smooth;
+  options.lod_vertices = settings.vertices;
+  options.num_hypotheses = settings.hypotheses;
+  options.smooth = settings.smooth;
   try {
     options.check();
   } catch (const std::invalid_argument& wrong) {
@@ -124,8 +123,8 @@ double mean_overlap(const SyntheticSequence& sequence, const std::vector<ClipIns
   std::vector<double> overlap(instants.size());
   parallel_for(instants.size(), 1, [&](size_t begin, size_t end) {
     for (size_t t = begin; t < end; ++t) {
-      overlap[t] = intersection_over_union(instants[t].observations[0].mask,
-                                           true_mask(sequence, 0, static_cast<int>(t)));
+      overlap[t] =
+          intersection_over_union(instants[t].observations[0].mask, true_mask(sequence, 0, static_cast<int>(t)));
     }
   });
   double sum = 0;

@@ -1,6 +1,6 @@
-// TrackingRuns: runs of an experiment, each from its settings to its scores: makes the sequence and its masks, tracks it
-// in process, and scores the result.
-// Threads: one thread; a run itself uses all cores and, times apart, gives the same result on any number.
+// TrackingRuns: runs of an experiment, each from its settings to its scores: makes the sequence and its masks, tracks
+// it in process, and scores the result. Threads: one thread; a run itself uses all cores and, times apart, gives the
+// same result on any number.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,7 @@ class TrackingRuns {
   // false there is no result. Scores: those of score_run(), frames_per_second (the tracker alone), start_s, mask_iou
   // (of the masks given to the tracker, first camera) and, of motion capture, retargeting_residual_deg.
   // Errors: a body, motion, view or option that is not there; the motion does not fit into the picture.
-  Result<std::optional<RunResult>> run(const RunSettings& settings, uint64_t seed,
-                                       const std::function<bool()>& go_on);
+  Result<std::optional<RunResult>> run(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
 
  private:
   // A sequence with its masks, kept for the next run, which often differs in the tracker only.
