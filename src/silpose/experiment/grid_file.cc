@@ -55,6 +55,9 @@ Result<Axis> read_axis(const toml::table& table, const std::string& file) {
     } else {
       return error("{}: tables with a label are wanted, or with `key` plain values", values);
     }
+    if (value.label.empty() || value.label.find_first_of(",\"\n\r/") != std::string::npos) {
+      return error("{}: '{}' is no label: empty, or with a comma, quote, slash or line break", values, value.label);
+    }
     if (!labels.insert(value.label).second) return error("{}: '{}' is there twice", values, value.label);
     axis.values.push_back(std::move(value));
   }
@@ -63,9 +66,10 @@ Result<Axis> read_axis(const toml::table& table, const std::string& file) {
 
 // [quick.axes] NAME = [labels]: only those stay.
 Result<void> keep_only(const toml::table& chosen, const std::string& file, std::vector<Axis>& axes) {
-  for (const auto& [name, node] : chosen) {
-    const Entry entry{node, fmt::format("{}: quick.axes.{}", file, name.str())};
-    const auto axis = std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == name.str(); });
+  for (const auto& [key, node] : chosen) {
+    const std::string name(key.str());
+    const Entry entry{node, fmt::format("{}: quick.axes.{}", file, name)};
+    const auto axis = std::find_if(axes.begin(), axes.end(), [&](const Axis& a) { return a.name == name; });
     if (axis == axes.end()) return error("{}: no such axis", entry.where);
     const Result<Texts> labels = texts_of(entry);
     if (!labels) return labels.failure();

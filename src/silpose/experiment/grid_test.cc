@@ -96,6 +96,7 @@ TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
       {axis + "values = [\"front\"]\n", "axis 'view'.values: tables with a label"},
       {axis + "values = [{ view = \"front\" }]\n", "axis 'view'.values: each needs a label"},
       {axis + "key = \"view\"\nvalues = [\"side\", \"side\"]\n", "'side' is there twice"},
+      {axis + "values = [{ label = \"a,b\" }]\n", "'a,b' is no label"},
       {axis + "key = \"sight\"\nvalues = [\"side\"]\n", "sight: no such setting"},
       {axis + "key = \"view\"\nvalues = [\"side\"]\n[[table]]\nname = \"t\"\nrows = [\"clip\"]\nfigures = [\"iou\"]\n",
        "table.rows: no axis 'clip'"},

@@ -69,6 +69,7 @@ double median_over_cells(std::span<const FinishedRun* const> runs, const std::st
     if (found != run->result.scores.end()) cells[run->cell_idx].push_back(found->second);
   }
   std::vector<double> means;
+  means.reserve(cells.size());
   for (const auto& [cell, values] : cells) means.push_back(summarise(values)->mean);
   std::sort(means.begin(), means.end());
   const size_t middle = means.size() / 2;
