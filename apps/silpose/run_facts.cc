@@ -5,7 +5,9 @@
 
 #include <fstream>
 #include <thread>
+#include <utility>
 
+#include "apps/silpose/option_file.h"
 #include "silpose/base/text_file.h"
 
 namespace silpose::app {
@@ -35,8 +37,25 @@ nlohmann::ordered_json run_facts(const CommonOptions& common) {
   return facts;
 }
 
-Result<void> write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json) {
-  return write_text_file(path, json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+Result<Outcome> deliver(ResultDirectory& directory, const CLI::App& command,
+                        const std::map<std::string, std::string>& chosen, Outcome outcome, Console& console) {
+  if (outcome.interrupted) {
+    const std::string line = fmt::format("interrupted; {} holds what is done", directory.path().string());
+    outcome.json["error"] = line;
+    console.error(line);
+  }
+  const std::string text = outcome.json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+  for (const Result<void>& written : {write_option_file(directory.path() / "config.toml", command, chosen),
+                                      write_text_file(directory.path() / "run.json", text + "\n")}) {
+    if (!written) return written.failure();
+  }
+  if (outcome.interrupted) {
+    directory.keep();
+    return outcome;
+  }
+  const Result<void> done = directory.commit();
+  if (!done) return done.failure();
+  return outcome;
 }
 
 }  // namespace silpose::app

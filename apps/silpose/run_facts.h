@@ -1,12 +1,15 @@
-// run.json: what was run and what came of it, in every result directory.
+// run.json and config.toml: what was run and what came of it, in every result directory.
 // Threads: the main thread only.
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "apps/silpose/command.h"
+#include "apps/silpose/console.h"
+#include "apps/silpose/result_directory.h"
 #include "silpose/base/result.h"
 
 namespace silpose::app {
@@ -17,6 +20,10 @@ nlohmann::ordered_json run_facts(const CommonOptions& common);
 // "AMD EPYC 7B13, 2 threads, Linux 6.1.0": the processor and system that results were made on.
 std::string machine_name();
 
-Result<void> write_json(const std::filesystem::path& path, const nlohmann::ordered_json& json);
+// How a command that makes a directory ends: writes config.toml (write_option_file()) and run.json, and renames the
+// directory to its final name, or leaves DIR.partial and says so where the work was interrupted.
+// Errors: not writable, cannot be renamed.
+Result<Outcome> deliver(ResultDirectory& directory, const CLI::App& command,
+                        const std::map<std::string, std::string>& chosen, Outcome outcome, Console& console);
 
 }  // namespace silpose::app

@@ -5,7 +5,6 @@
 
 #include "apps/silpose/command.h"
 #include "apps/silpose/observation_source.h"
-#include "apps/silpose/option_file.h"
 #include "apps/silpose/result_directory.h"
 #include "apps/silpose/run_facts.h"
 #include "silpose/image/image_file.h"
@@ -64,17 +63,7 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
   outcome.text =
       fmt::format("{} masks in {}/masks, {} of them empty ({})", frames, options.out, empty, source->background());
   outcome.interrupted = stopped;
-  for (const Result<void>& written : {write_option_file(directory->path() / "config.toml", app, {}),
-                                      write_json(directory->path() / "run.json", outcome.json)}) {
-    if (!written) return written.failure();
-  }
-  if (stopped) {
-    directory->keep();
-    return outcome;
-  }
-  const Result<void> done = directory->commit();
-  if (!done) return done.failure();
-  return outcome;
+  return deliver(*directory, app, {}, std::move(outcome), console);
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/camera_choice.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/option_file.h"
 #include "apps/silpose/result_directory.h"
 #include "apps/silpose/run_facts.h"
 #include "silpose/synth/sequence_files.h"
@@ -124,17 +123,7 @@ Result<Outcome> run_synth(const CLI::App& app, const SynthOptions& options, cons
   outcome.json["distance_m"] = sequence->distance_m;
   outcome.json["out"] = options.out;
   outcome.text = fmt::format("{} frames in {}, camera at {:.2f} m", *frames, options.out, sequence->distance_m);
-  const Result<void> kept = write_option_file(directory->path() / "config.toml", app, {});
-  if (!kept) return kept.failure();
-  const Result<void> written = write_json(directory->path() / "run.json", outcome.json);
-  if (!written) return written.failure();
-  if (outcome.interrupted) {
-    directory->keep();
-    return outcome;
-  }
-  const Result<void> done = directory->commit();
-  if (!done) return done.failure();
-  return outcome;
+  return deliver(*directory, app, {}, std::move(outcome), console);
 }
 
 }  // namespace

@@ -12,36 +12,57 @@
 namespace silpose::app {
 namespace {
 
-void add_tracker_options(CLI::App& app, TrackOptions& options) {
+constexpr const char* kFitted = "Fitted hypotheses (presets default and accurate)";
+constexpr const char* kSampling = "Sampling filters (preset thesis, or with --particles or --layers)";
+
+void add_fitted_options(CLI::App& app, TrackerOptions& tracker) {
+  app.add_option("--hypotheses", tracker.num_hypotheses, "Poses that are kept possible at a time (4; accurate: 8)")
+      ->check(CLI::Range(1, 64))
+      ->group(kFitted);
+  app.add_flag_function("--smooth,!--no-smooth", [&tracker](int64_t count) { tracker.smooth = count > 0; },
+                        "Of a recorded clip: track both ways, then fit all frames at once (accurate: on)")
+      ->group(kFitted);
+}
+
+void add_sampling_options(CLI::App& app, TrackOptions& options) {
   TrackerOptions& tracker = options.tracker;
-  app.add_option("--preset", tracker.preset, "default, or thesis: two plain filters, root and pose")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"default", "thesis"}));
-  app.add_option("--particles", tracker.num_particles, "Particles in a layer")->check(CLI::Range(2, 1'000'000));
-  app.add_option("--layers", tracker.num_layers, "Annealing layers; 1 is a plain filter")->check(CLI::Range(1, 200));
-  app.add_option("--motion", tracker.motion, "How particles move between frames")
+  const auto add = [&app](const char* name, auto& value, const char* what) {
+    return app.add_option(name, value, what)->group(kSampling);
+  };
+  add("--particles", tracker.num_particles, "Particles in a layer")->check(CLI::Range(2, 1'000'000));
+  add("--layers", tracker.num_layers, "Annealing layers; 1 is a plain filter")->check(CLI::Range(1, 200));
+  add("--motion", tracker.motion, "How particles move between frames")
       ->check(CLI::IsMember({"diffusion", "first-order-augmented"}));
-  app.add_option("--sigma-deg", tracker.sigma_deg, "Noise of a typical joint angle in 1/30 s")
-      ->check(within(1e-3, 90));
-  app.add_option("--resampling", tracker.resampling, "Which particles go on")
-      ->check(CLI::IsMember({"systematic", "comb"}));
-  app.add_option("--resample-below", tracker.resample_below, "Only when n_eff is below this part of the particles")
-      ->capture_default_str()
+  add("--sigma-deg", tracker.sigma_deg, "Noise of a typical joint angle in 1/30 s")->check(within(1e-3, 90));
+  add("--resampling", tracker.resampling, "Which particles go on")->check(CLI::IsMember({"systematic", "comb"}));
+  add("--resample-below", options.resample_below, "Only when n_eff is below this part of the particles (1)")
       ->check(within(0, 1));
-  app.add_option("--regenerate", tracker.regenerate, "Part of the comb's particles that is made anew")
-      ->check(within(0, 0.99));
-  app.add_option("--sharpness", tracker.sharpness, "How strongly better silhouettes are preferred")
-      ->check(within(1e-3, 1e6));
-  app.add_option("--metric", options.metric, "How silhouettes are compared")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"pixel-count"}));
-  app.add_option("--root", options.root, "tracked, or fixed where it starts")
+  add("--regenerate", tracker.regenerate, "Part of the comb's particles that is made anew")->check(within(0, 0.99));
+  add("--sharpness", tracker.sharpness, "How strongly better silhouettes are preferred")->check(within(1e-3, 1e6));
+  add("--metric", options.metric, "How silhouettes are compared")->check(CLI::IsMember({"pixel-count"}));
+  add("--root", options.root, "tracked, or fixed where it starts")
       ->capture_default_str()
       ->check(CLI::IsMember({"tracked", "fixed"}));
-  app.add_option("--init", options.init, "First pose: descent, or a poses.csv (its row of the first frame)")
-      ->capture_default_str();
-  app.add_option("--estimate", options.estimate, "Which pose is reported: mean, mode or cluster")
+  add("--estimate", options.estimate, "Which pose is reported: mean, mode or cluster")
       ->check(CLI::IsMember({"mean", "mode", "cluster"}));
+}
+
+// The first option given that only the sampling filters have.
+std::optional<std::string> sampling_option(const TrackOptions& options) {
+  const TrackerOptions& tracker = options.tracker;
+  const std::pair<const char*, bool> given[] = {{"--motion", tracker.motion.has_value()},
+                                                {"--sigma-deg", tracker.sigma_deg.has_value()},
+                                                {"--resampling", tracker.resampling.has_value()},
+                                                {"--resample-below", options.resample_below.has_value()},
+                                                {"--regenerate", tracker.regenerate.has_value()},
+                                                {"--sharpness", tracker.sharpness.has_value()},
+                                                {"--metric", options.metric.has_value()},
+                                                {"--root fixed", options.root == "fixed"},
+                                                {"--estimate", options.estimate.has_value()}};
+  for (const auto& [name, is_given] : given) {
+    if (is_given) return name;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -51,40 +72,71 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
   app.add_option("--out", options.out, "Directory for the result");
   add_model_option(app, options.model);
   add_camera_options(app, options.camera);
-  add_tracker_options(app, options);
+  app.add_option("--preset", options.tracker.preset,
+                 "default: hypotheses fitted online; accurate: more of them, the whole mesh, smoothed; thesis: two plain "
+                 "particle filters, root and pose")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"default", "accurate", "thesis"}));
+  app.add_option("--vertices", options.tracker.lod_vertices,
+                 "About how many of the body's are compared (2500; sampling 2000; accurate and 0: all)")
+      ->check(CLI::Range(0, 1'000'000));
+  app.add_option("--init", options.init, "First pose: descent, or a poses.csv (its row of the first frame)")
+      ->capture_default_str();
   app.add_option("--config", options.config, "Options from a TOML file; the command line wins");
+  add_fitted_options(app, options.tracker);
+  add_sampling_options(app, options);
 }
 
-Result<std::vector<double>> read_initial_pose(const std::string& file, const Skeleton& skeleton, int64_t frame) {
-  const Result<PoseTable> table = read_poses(file, skeleton);
-  if (!table) return table.failure();
-  if (table->rows.empty()) return error("{}: no pose in it", file);
-  for (const PoseTable::Row& row : table->rows) {
-    if (row.frame == frame) return row.values;
+void check_together(const TrackOptions& options) {
+  const TrackerOptions& tracker = options.tracker;
+  const char* const sampler = tracker.num_particles ? "--particles"
+                              : tracker.num_layers  ? "--layers"
+                                                    : "--preset thesis";
+  if (tracker.preset == "thesis" || tracker.num_particles || tracker.num_layers) {
+    if (tracker.num_hypotheses) throw UsageError(fmt::format("--hypotheses: not together with {}", sampler));
+    if (tracker.smooth.value_or(false)) throw UsageError(fmt::format("--smooth: not together with {}", sampler));
+    return;
   }
-  return table->rows.front().values;
+  if (const std::optional<std::string> name = sampling_option(options)) {
+    throw UsageError(fmt::format("{}: needs --particles, --layers or --preset thesis", *name));
+  }
+  for (const std::string& video : options.input.videos) {
+    if (video.starts_with("camera:") && *tracker.resolved().smooth) {
+      throw UsageError(fmt::format("--smooth: {} is live, smoothing needs a recorded clip{}", video,
+                                   tracker.smooth ? "" : " (--preset accurate smooths; --no-smooth)"));
+    }
+  }
 }
 
-Result<Tracker> make_tracker(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
-                             std::vector<PinholeCamera> cameras, uint64_t seed, int64_t first_frame) {
+TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
+                               std::vector<PinholeCamera> cameras, uint64_t seed) {
   TrackerOptions tracker = options.tracker;
   tracker.body = std::move(body);
   tracker.cameras = std::move(cameras);
   tracker.seed = seed;
   tracker.root_fixed = options.root == "fixed";
+  tracker.resample_below = options.resample_below.value_or(tracker.resample_below);
   if (options.estimate == "mean") tracker.estimate = Estimate::kMean;
   if (options.estimate == "mode") tracker.estimate = Estimate::kMode;
   if (options.estimate == "cluster") tracker.estimate = Estimate::kCluster;
-  if (options.init != "descent") {
-    Result<std::vector<double>> pose = read_initial_pose(options.init, tracker.body->skeleton, first_frame);
-    if (!pose) return pose.failure();
-    tracker.initial_pose = std::move(*pose);
-  }
   try {
-    return Tracker(tracker);
+    tracker.check();
   } catch (const std::invalid_argument& wrong) {
     throw UsageError(wrong.what());
   }
+  return tracker;
+}
+
+Result<std::optional<std::vector<double>>> read_initial_pose(const TrackOptions& options, const Skeleton& skeleton,
+                                                             int64_t frame) {
+  if (options.init == "descent") return std::optional<std::vector<double>>();
+  const Result<PoseTable> table = read_poses(options.init, skeleton);
+  if (!table) return table.failure();
+  if (table->rows.empty()) return error("{}: no pose in it", options.init);
+  for (const PoseTable::Row& row : table->rows) {
+    if (row.frame == frame) return std::optional(row.values);
+  }
+  return std::optional(table->rows.front().values);
 }
 
 std::map<std::string, std::string> chosen_options(const TrackerOptions& used) {
@@ -92,11 +144,18 @@ std::map<std::string, std::string> chosen_options(const TrackerOptions& used) {
   const auto keep = [&](const char* name, const auto& value) {
     if (value) chosen[name] = fmt::format("{}", *value);
   };
+  keep("vertices", used.lod_vertices);
+  keep("hypotheses", used.num_hypotheses);
+  if (used.num_hypotheses) {
+    keep("smooth", used.smooth);
+    return chosen;
+  }
   keep("particles", used.num_particles);
   keep("layers", used.num_layers);
   keep("motion", used.motion);
   keep("sigma-deg", used.sigma_deg);
   keep("resampling", used.resampling);
+  keep("resample-below", std::optional(used.resample_below));
   keep("regenerate", used.regenerate);
   keep("sharpness", used.sharpness);
   if (used.estimate) {

@@ -15,17 +15,19 @@ TrackWriter::TrackWriter(std::filesystem::path directory, std::shared_ptr<const 
                          std::vector<PinholeCamera> cameras, double fps)
     : directory_(std::move(directory)), body_(std::move(body)), cameras_(std::move(cameras)), fps_(fps) {}
 
-Result<void> TrackWriter::add_frame(const Instant& instant, const StepReport& report) {
+Result<void> TrackWriter::add_masks(int64_t frame_idx, std::span<const Observation> observations) {
   for (size_t c = 0; c < cameras_.size(); ++c) {
     const auto folder = directory_ / (cameras_.size() == 1 ? "masks" : "masks_" + cameras_[c].name);
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
-    const Result<void> written =
-        write_mask(folder / fmt::format("{:06}.png", instant.frame.index), instant.observations[c].mask);
+    const Result<void> written = write_mask(folder / fmt::format("{:06}.png", frame_idx), observations[c].mask);
     if (!written) return written.failure();
   }
-  ByteImage picture = instant.frame.images[0];
-  if (!report.pose.empty()) draw_overlay(picture, *body_, cameras_[0], report.pose);
+  return {};
+}
+
+Result<void> TrackWriter::add_picture(ByteImage picture, std::span<const double> pose) {
+  if (!pose.empty()) draw_overlay(picture, *body_, cameras_[0], pose);
   if (!overlay_) {
     Result<VideoWriter> created = create_video(directory_ / "overlay.mp4", picture.width(), picture.height(), fps_);
     if (!created) return created.failure();
@@ -34,8 +36,10 @@ Result<void> TrackWriter::add_frame(const Instant& instant, const StepReport& re
   return overlay_->write(picture);
 }
 
-Result<void> TrackWriter::write_recording(const TrackRecording& recording) {
+Result<void> TrackWriter::finish(const TrackRecording& recording) {
   if (overlay_) overlay_->close();
+  const Result<void> kept = write_cameras(directory_ / "camera.toml", cameras_);
+  if (!kept || recording.steps.empty()) return kept;
   const Skeleton& skeleton = body_->skeleton;
   const std::vector<std::vector<double>> poses = even_poses(recording);
   const Result<void> files[] = {
@@ -45,7 +49,6 @@ Result<void> TrackWriter::write_recording(const TrackRecording& recording) {
       write_poses(directory_ / "spread.csv", skeleton, spread_table(recording)),
       write_joints(directory_ / "joints.csv", joint_table(recording, *body_, cameras_[0])),
       write_bvh(directory_ / "motion.bvh", clip_from_poses(skeleton, poses, fps_, body_->end_points)),
-      write_cameras(directory_ / "camera.toml", cameras_),
   };
   for (const Result<void>& file : files) {
     if (!file) return file;

@@ -1,19 +1,20 @@
-// TrackWriter: the files of a track's result directory. Masks and the overlay are written as frames come; everything
-// else is made of the recording at the end, also of one that was interrupted.
+// TrackWriter: the files of a track's result directory. Masks are written as frames come; everything else is made of
+// the recording, also of one that was interrupted.
 // Threads: the main thread only.
 #pragma once
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
-#include "apps/silpose/observation_source.h"
 #include "silpose/base/result.h"
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/image/video.h"
 #include "silpose/recording/track_recorder.h"
+#include "silpose/shape/observation.h"
 
 namespace silpose::app {
 
@@ -22,11 +23,18 @@ class TrackWriter {
   TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
               std::vector<PinholeCamera> cameras, double fps);
 
-  // masks/ (masks_NAME/ with several cameras) and one picture of overlay.mp4, of the first camera.
-  Result<void> add_frame(const Instant& instant, const StepReport& report);
+  // One frame of masks/ (masks_NAME/ with several cameras). Shapes: one observation a camera.
+  Result<void> add_masks(int64_t frame_idx, std::span<const Observation> observations);
 
-  // Ends overlay.mp4; writes poses, poses_normalised, spread and joints as CSV, motion.bvh and camera.toml.
-  Result<void> write_recording(const TrackRecording& recording);
+  // The next picture of overlay.mp4, of the first camera, with `pose` [D] drawn on it; empty: nothing is.
+  Result<void> add_picture(ByteImage picture, std::span<const double> pose);
+
+  // Ends overlay.mp4; writes camera.toml and, where the recording holds anything, poses, poses_normalised, spread and
+  // joints as CSV and motion.bvh.
+  Result<void> finish(const TrackRecording& recording);
+
+  [[nodiscard]] const std::vector<PinholeCamera>& cameras() const { return cameras_; }
+  [[nodiscard]] const BodyModel& body() const { return *body_; }
 
  private:
   std::filesystem::path directory_;

@@ -1,0 +1,82 @@
+#include "apps/silpose/track_result.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "apps/silpose/run_facts.h"
+#include "silpose/report/report_page.h"
+
+namespace silpose::app {
+namespace {
+
+nlohmann::ordered_json figure(double mean, double std) {
+  if (std::isnan(mean)) return nullptr;
+  return {{"mean", mean}, {"std", std}};
+}
+
+double frames_per_second(const Tracked& tracked) { return static_cast<double>(tracked.num_frames) / tracked.loop_s; }
+
+}  // namespace
+
+Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder) {
+  const Tracked& tracked = told.tracked;
+  const RecordingSummary summary = summarise(tracked.recording);
+  Outcome outcome;
+  outcome.interrupted = tracked.interrupted;
+  nlohmann::ordered_json& run = outcome.json;
+  run = run_facts(told.common);
+  run["model"] = told.options.model;
+  run["body"] = told.writer.body().name;
+  run["frames"] = tracked.num_frames;
+  run["frames_tracked"] = summary.frames_tracked;
+  run["frames_coasted"] = summary.frames_coasted;
+  run["stages_s"] = nlohmann::ordered_json::object();
+  for (const auto& [stage, seconds] : tracked.seconds.list()) run["stages_s"][stage] = seconds;
+  run["frames_per_second"] = frames_per_second(tracked);
+  run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
+  run["background"] = told.source.background();
+  run["cameras"] = nlohmann::ordered_json::array();
+  for (const PinholeCamera& camera : told.writer.cameras()) run["cameras"].push_back(camera.name);
+  run["warnings"] = told.warnings;
+  run["out"] = told.options.out;
+
+  outcome.text = fmt::format("{} frames, {} tracked, {} coasted; {:.1f} frames a second\n", tracked.num_frames,
+                             summary.frames_tracked, summary.frames_coasted, frames_per_second(tracked));
+  if (summary.frames_tracked > 0) {
+    outcome.text += fmt::format("visual accuracy {:.3f} \u00b1 {:.3f}\n", summary.visual_accuracy_mean,
+                                summary.visual_accuracy_std);
+  }
+  if (tracked.recording.steps.empty()) {
+    outcome.text += fmt::format("masks: {}", folder.string());
+  } else {
+    outcome.text += fmt::format("overlay: {0}/overlay.mp4\nreport:  {0}/report.html", folder.string());
+  }
+  return outcome;
+}
+
+Result<void> write_track_report(const TrackTold& told, const std::filesystem::path& folder) {
+  ReportInput report;
+  report.title = std::filesystem::path(told.source.video().name()).filename().string();
+  if (report.title.empty()) report.title = told.source.video().name();
+  report.recording = &told.tracked.recording;
+  report.skeleton = &told.writer.body().skeleton;
+  // Not there where drawing it was interrupted before its first picture.
+  if (std::filesystem::exists(folder / "overlay.mp4")) report.overlay_video = folder / "overlay.mp4";
+  report.fps = told.source.video().fps();
+  report.stages_s = told.tracked.seconds.list();
+  report.warnings = told.warnings;
+  report.facts = {{"Command", told.common.command_line},
+                  {"Version", SILPOSE_VERSION},
+                  {"Machine", machine_name()},
+                  {"Body", told.writer.body().name},
+                  {"Silhouettes from", told.source.background()},
+                  {"Camera", told.options.camera.file.empty() ? "assumed" : told.options.camera.file},
+                  {"preset", told.options.tracker.preset}};
+  for (const auto& [name, value] : chosen_options(told.tracked.used)) report.facts.emplace_back(name, value);
+  report.facts.emplace_back("Seed", std::to_string(told.common.seed));
+  report.facts.emplace_back("Frames a second", fmt::format("{:.2f}", frames_per_second(told.tracked)));
+  return write_report(folder / "report.html", report);
+}
+
+}  // namespace silpose::app

@@ -1,0 +1,30 @@
+// What a track's directory says of the run: the facts of run.json, the lines on the terminal, and report.html.
+// Threads: the main thread only.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/silpose/command.h"
+#include "apps/silpose/track_run.h"
+
+namespace silpose::app {
+
+// What is told of.
+struct TrackTold {
+  const TrackOptions& options;
+  const CommonOptions& common;
+  const TrackWriter& writer;
+  const ObservationSource& source;
+  const Tracked& tracked;
+  std::vector<std::string> warnings;
+};
+
+// `folder`: where the files will be when the command ends.
+Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder);
+
+// report.html in `folder`, with the overlay.mp4 that is there. Errors: those of write_report().
+Result<void> write_track_report(const TrackTold& told, const std::filesystem::path& folder);
+
+}  // namespace silpose::app
