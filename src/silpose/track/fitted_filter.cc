@@ -12,8 +12,8 @@ namespace silpose {
 namespace {
 
 // Outlines are never trusted further than this, however well a body may fit: its skin has its own errors.
-constexpr double kLeastNoise = 3;
-constexpr double kFirstNoise = 6;
+constexpr double kLeastNoise = 1;
+constexpr double kFirstNoise = 4;
 // How many frames the estimate of the noise looks back.
 constexpr double kNoiseMemory = 10;
 // Numbers that a fit takes from an outline: what they explain is not left in the residual.
@@ -23,6 +23,14 @@ MixtureOptions mixture_options(const TrackerOptions& options) {
   return {.num_hypotheses = *options.num_hypotheses, .seed = options.seed};
 }
 
+std::vector<Eigen::VectorXd> poses_of(std::span<const StartingPose> starts) {
+  std::vector<Eigen::VectorXd> poses;
+  for (const StartingPose& start : starts) {
+    poses.emplace_back(Eigen::Map<const Eigen::VectorXd>(start.pose.data(), std::ssize(start.pose)));
+  }
+  return poses;
+}
+
 }  // namespace
 
 FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
@@ -30,15 +38,13 @@ FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const 
     : fine_(fine), mixture_(std::move(fine), std::move(coarse), mixture_options(options)) {}
 
 void FittedFilter::start(std::span<const StartingPose> starts) {
-  std::vector<Eigen::VectorXd> poses;
-  std::vector<double> log_weights;
-  for (const StartingPose& start : starts) {
-    poses.push_back(Eigen::Map<const Eigen::VectorXd>(start.pose.data(), std::ssize(start.pose)));
-    log_weights.push_back(0);  // the first step weighs them
-  }
-  mixture_.start(poses, log_weights);
+  mixture_.start(poses_of(starts));
   noise_.assign(fine_->cameras().size(), kFirstNoise);
   report();
+}
+
+void FittedFilter::add(std::span<const StartingPose> starts) {
+  mixture_.add(poses_of(starts));
 }
 
 FilterReport FittedFilter::step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) {

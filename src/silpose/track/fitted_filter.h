@@ -19,6 +19,7 @@ class FittedFilter final : public PoseFilter {
                std::shared_ptr<const CoverageLikelihood> coarse);
 
   void start(std::span<const StartingPose> starts) override;
+  void add(std::span<const StartingPose> starts) override;
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override;
   FilterReport coast(double dt_s) override;
   [[nodiscard]] const ParticleSet& particles() const override { return particles_; }  // the hypotheses' poses
@@ -36,7 +37,6 @@ class FittedFilter final : public PoseFilter {
   MixtureFilter mixture_;
   ParticleSet particles_;
   std::vector<double> noise_;  // [C]
-  double age_s_ = 0;
 };
 
 }  // namespace silpose

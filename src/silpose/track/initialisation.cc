@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "silpose/base/check.h"
@@ -19,6 +20,9 @@ constexpr double kPlacingResolution = 96;  // raster pixels along the longer sid
 // All candidates are fitted at these; the best of each heading at the finer ones.
 constexpr FitStage kCoarseStages[] = {{Blur::k32, 3}, {Blur::k16, 4}};
 constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}};
+constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};
+// E of a start that leaves nothing to explain; and how far a variant must be from its origin to be worth a fit, metres.
+constexpr double kExplained = 6, kNovelty = 0.15;
 
 struct Blob {
   double area = 0;
@@ -76,14 +80,7 @@ double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::spa
   return (root.rotation * Eigen::Vector3d::UnitZ()).dot((camera.centre_in_world() - root.translation).normalized());
 }
 
-// How far the joint or end point that is furthest off is off.
-double landmark_distance(const BodyModel& body, const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-  const auto n = static_cast<size_t>(a.size());
-  const auto x = landmark_positions(body, {a.data(), n}), y = landmark_positions(body, {b.data(), n});
-  double furthest = 0;
-  for (size_t i = 0; i < x.size(); ++i) furthest = std::max(furthest, (x[i] - y[i]).norm());
-  return furthest;
-}
+std::span<const double> view(const Eigen::VectorXd& pose) { return {pose.data(), static_cast<size_t>(pose.size())}; }
 
 struct Candidate {
   PosePrior prior;
@@ -103,6 +100,58 @@ void fit_all(const CoverageLikelihood& likelihood, const CoverageEvidence& evide
 
 void sort_best_first(std::vector<Candidate>& candidates) {
   std::ranges::stable_sort(candidates, {}, [](const Candidate& c) { return c.fit.cost(); });
+}
+
+Candidate candidate_at(const Skeleton& skeleton, std::span<const double> pose) {
+  Candidate candidate;
+  candidate.fit.pose = Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose));
+  candidate.prior = prior_about(skeleton, candidate.fit.pose);
+  return candidate;
+}
+
+// The best, of which every two differ in some joint by more than `distance`.
+void keep_distinct(const BodyModel& body, double distance, size_t most, std::vector<Candidate>& candidates) {
+  sort_best_first(candidates);
+  std::vector<std::vector<Eigen::Vector3d>> kept;
+  std::erase_if(candidates, [&](const Candidate& candidate) {
+    if (kept.size() >= most) return true;
+    auto x = landmark_positions(body, view(candidate.fit.pose));
+    if (std::ranges::any_of(kept, [&](const auto& other) { return furthest_apart(x, other) < distance; })) return true;
+    kept.push_back(std::move(x));
+    return false;
+  });
+}
+
+// Of the best starts, other limbs: those that one evaluation finds most promising, none too near where it came from.
+std::vector<Candidate> promising_variants(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence,
+                                          const Eigen::Vector3d& eye, std::span<const Candidate> starts,
+                                          const InitialisationOptions& options, uint64_t round) {
+  const BodyModel& body = likelihood.body();
+  const std::vector<Limb> limbs = limbs_of(body.skeleton);
+  std::vector<Candidate> chosen;
+  for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
+    Rng rng(options.seed, round, i);
+    const auto variants = limb_variants(body, limbs, view(starts[i].fit.pose), eye, options.num_random_limbs, rng);
+    std::vector<double> energy(variants.size());
+    parallel_for(variants.size(), 8, [&](size_t begin, size_t end) {
+      CoverageLikelihood::Scratch scratch(likelihood);
+      for (size_t v = begin; v < end; ++v) {
+        energy[v] = likelihood.energy(evidence, Blur::k4, variants[v].pose, scratch);
+      }
+    });
+    std::vector<size_t> order(variants.size());
+    std::iota(order.begin(), order.end(), size_t{0});
+    std::ranges::stable_sort(order, {}, [&](size_t v) { return energy[v]; });
+    std::vector<std::vector<Eigen::Vector3d>> known = {landmark_positions(body, view(starts[i].fit.pose))};
+    for (const size_t v : order) {
+      if (std::ssize(known) > options.num_fitted) break;
+      auto x = landmark_positions(body, variants[v].pose);
+      if (std::ranges::any_of(known, [&](const auto& other) { return furthest_apart(x, other) < kNovelty; })) continue;
+      known.push_back(std::move(x));
+      chosen.push_back(candidate_at(body.skeleton, variants[v].pose));
+    }
+  }
+  return chosen;
 }
 
 }  // namespace
@@ -158,8 +207,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::
   const StateBatch placed = place_on_mask(body, camera, observations[seen], candidates);
   std::vector<Candidate> starts(static_cast<size_t>(placed.rows()));
   for (size_t k = 0; k < starts.size(); ++k) {
-    starts[k].fit.pose = placed.row(static_cast<Eigen::Index>(k)).head(skeleton.num_dofs());
-    starts[k].prior = prior_about(skeleton, starts[k].fit.pose);
+    starts[k] = candidate_at(skeleton, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
   }
   fit_all(likelihood, evidence, kCoarseStages, starts);
   sort_best_first(starts);
@@ -170,42 +218,29 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::
   fit_all(likelihood, evidence, kFineStages, starts);
   sort_best_first(starts);
 
-  // What looks almost the same: limbs exchanged or reflected in depth, the whole body mirrored in depth.
-  std::vector<Candidate> variants;
-  const std::vector<Limb> limbs = limbs_of(skeleton);
-  const auto add = [&](std::span<const double> pose) {
-    if (pose.empty()) return;
-    Candidate variant;
-    variant.fit.pose = Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose));
-    variant.prior = prior_about(skeleton, variant.fit.pose);
-    variants.push_back(std::move(variant));
-  };
+  // The whole body mirrored in depth looks almost the same; other limbs may look better. Round by round.
+  std::vector<Candidate> mirrored;
   for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
-    const std::span<const double> pose(starts[i].fit.pose.data(), static_cast<size_t>(starts[i].fit.pose.size()));
-    const std::vector<double> mirrored = mirrored_in_depth(skeleton, pose, camera.centre_in_world());
-    add(mirrored);
-    for (const auto& variant : exchanged_limbs(skeleton, pose)) add(variant);
-    for (const Limb& limb : limbs) {
-      for (const auto& variant : reflected_limb(body, limb, pose, camera.centre_in_world())) add(variant);
-    }
+    const std::vector<double> pose = mirrored_in_depth(skeleton, view(starts[i].fit.pose), camera.centre_in_world());
+    if (!pose.empty()) mirrored.push_back(candidate_at(skeleton, pose));
   }
-  fit_all(likelihood, evidence, kFineStages, variants);
-  for (Candidate& variant : variants) starts.push_back(std::move(variant));
+  fit_all(likelihood, evidence, kFineStages, mirrored);
+  std::ranges::move(mirrored, std::back_inserter(starts));
+  keep_distinct(body, options.merge_distance, static_cast<size_t>(options.num_starts), starts);
+  for (int round = 0; round < options.num_rounds && starts.front().fit.energy > kExplained; ++round) {
+    std::vector<Candidate> variants = promising_variants(likelihood, evidence, camera.centre_in_world(), starts, options,
+                                                         static_cast<uint64_t>(round));
+    fit_all(likelihood, evidence, kVariantStages, variants);
+    std::ranges::move(variants, std::back_inserter(starts));
+    keep_distinct(body, options.merge_distance, static_cast<size_t>(options.num_starts), starts);
+  }
 
   const auto log_likelihood = [&](const Candidate& c) {
-    return -0.5 * c.fit.cost() + options.facing_bonus * faces_camera(body, camera, {c.fit.pose.data(), static_cast<size_t>(c.fit.pose.size())});
+    return -0.5 * c.fit.cost() + options.facing_bonus * faces_camera(body, camera, view(c.fit.pose));
   };
   std::ranges::stable_sort(starts, std::greater<>{}, log_likelihood);
   std::vector<StartingPose> best;
-  std::vector<const Candidate*> kept;
   for (const Candidate& start : starts) {
-    if (std::ssize(best) == options.num_starts) break;
-    if (std::ranges::any_of(kept, [&](const Candidate* other) {
-          return landmark_distance(body, start.fit.pose, other->fit.pose) < options.merge_distance;
-        })) {
-      continue;
-    }
-    kept.push_back(&start);
     best.push_back({{start.fit.pose.begin(), start.fit.pose.end()}, log_likelihood(start)});
   }
   return best;

@@ -205,6 +205,30 @@ std::vector<double> random_limb(const Skeleton& skeleton, const Limb& limb, std:
   return variant;
 }
 
+std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Limb> limbs, std::span<const double> pose,
+                                       const Eigen::Vector3d& eye, int num_random, Rng& rng) {
+  std::vector<LimbVariant> variants;
+  for (size_t l = 0; l < limbs.size(); ++l) {
+    for (auto& reflected : reflected_limb(body, limbs[l], pose, eye)) variants.push_back({{l}, std::move(reflected)});
+  }
+  for (const auto& [a, b] : alike_limbs(body.skeleton, limbs)) {
+    LimbVariant exchanged{{a, b}, {pose.begin(), pose.end()}};
+    exchange(exchanged.pose, limbs[a], limbs[b]);
+    variants.push_back(std::move(exchanged));
+  }
+  for (int i = 0; i < num_random && !limbs.empty(); ++i) {
+    const size_t l = static_cast<size_t>(i) % limbs.size();
+    variants.push_back({{l}, random_limb(body.skeleton, limbs[l], pose, rng)});
+  }
+  return variants;
+}
+
+double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b) {
+  double furthest = 0;
+  for (size_t i = 0; i < a.size(); ++i) furthest = std::max(furthest, (a[i] - b[i]).norm());
+  return furthest;
+}
+
 std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,
                                       const Eigen::Vector3d& eye) {
   int turn = -1;

@@ -42,6 +42,19 @@ std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Lim
 // The pose with the limb's DOF drawn anew: near the pose, or anywhere within limits, each with probability 1/2.
 std::vector<double> random_limb(const Skeleton& skeleton, const Limb& limb, std::span<const double> pose, Rng& rng);
 
+// Another pose, and which limbs (indices) it differs in.
+struct LimbVariant {
+  std::vector<size_t> limbs;
+  std::vector<double> pose;  // [D]
+};
+
+// All of the above for one pose: reflections of each limb, exchanges, and `num_random` random limbs, in turn.
+std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Limb> limbs, std::span<const double> pose,
+                                       const Eigen::Vector3d& eye, int num_random, Rng& rng);
+
+// How far the joint or end point that is furthest off is off, metres. Shapes: landmarks [J + E] of two poses.
+double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b);
+
 // The pose as a mirror that faces `eye` shows it, right and left relabelled: from far away its silhouette is the same.
 // Nothing for a skeleton whose root cannot turn about the vertical.
 std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "silpose/base/check.h"
@@ -39,7 +38,6 @@ struct MixtureFilter::Child {
   Eigen::VectorXd start;        // of the fit
   PoseFit fit;
   double log_weight = 0;        // before this step's evidence
-  int parent = 0;
   bool jumped = false;
 };
 
@@ -50,28 +48,33 @@ MixtureFilter::MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine,
   check(options.num_hypotheses >= 1, "MixtureFilter: {} hypotheses", options.num_hypotheses);
   const Skeleton& skeleton = fine_->body().skeleton;
   limbs_ = limbs_of(skeleton);
-  pairs_ = alike_limbs(skeleton, limbs_);
   acceleration_ = acceleration_deviation(skeleton);
   for (double& deviation : acceleration_) deviation *= options.acceleration;
 }
 
-void MixtureFilter::start(const std::vector<Eigen::VectorXd>& poses, std::span<const double> log_weights) {
-  check(!poses.empty() && poses.size() == log_weights.size(), "MixtureFilter: {} poses, {} weights", poses.size(),
-        log_weights.size());
-  const auto dofs = fine_->body().skeleton.dofs();
+GaussianComponent MixtureFilter::component_of(const Eigen::VectorXd& pose, double log_weight) const {
   std::vector<double> deviation, speed;
-  for (const Dof& dof : dofs) {
+  for (const Dof& dof : fine_->body().skeleton.dofs()) {
     deviation.push_back(dof.is_translation ? kStartMetres : kStartAngle);
     speed.push_back(dof.is_translation || dof.joint_idx == 0 ? kStartSpeed : kStartTurn);
   }
+  GaussianComponent component = component_at(view(pose), deviation, speed);
+  component.log_weight = log_weight;
+  return component;
+}
+
+void MixtureFilter::start(const std::vector<Eigen::VectorXd>& poses) {
+  check(!poses.empty(), "MixtureFilter: no pose to start from");
   hypotheses_.clear();
-  for (size_t i = 0; i < poses.size(); ++i) {
-    hypotheses_.push_back(component_at(view(poses[i]), deviation, speed));
-    hypotheses_.back().log_weight = log_weights[i];
-  }
-  std::ranges::stable_sort(hypotheses_, std::greater<>{}, &GaussianComponent::log_weight);
+  for (const Eigen::VectorXd& pose : poses) hypotheses_.push_back(component_of(pose, 0));
   normalise_weights(hypotheses_);
-  parents_.assign(hypotheses_.size(), -1);
+}
+
+void MixtureFilter::add(const std::vector<Eigen::VectorXd>& poses) {
+  check(!hypotheses_.empty(), "MixtureFilter: add before start");
+  const double log_weight = hypotheses_.front().log_weight + options_.jump_log_prior;
+  for (const Eigen::VectorXd& pose : poses) hypotheses_.push_back(component_of(pose, log_weight));
+  normalise_weights(hypotheses_);
 }
 
 MixtureReport MixtureFilter::step(const CoverageEvidence& evidence, double dt_s) {
@@ -96,7 +99,6 @@ MixtureReport MixtureFilter::step(const CoverageEvidence& evidence, double dt_s)
     child.prior = prior_of(child.component);
     child.start = child.prior.mean;
     child.log_weight = hypotheses_[i].log_weight;
-    child.parent = static_cast<int>(i);
   }
   fit(children, kTrackingStages);
   std::vector<Child> jumps = candidates(evidence, children, report);
@@ -111,8 +113,6 @@ void MixtureFilter::coast(double dt_s) {
   for (GaussianComponent& hypothesis : hypotheses_) {
     predict_constant_velocity(hypothesis, dt_s, acceleration_, kNoiseInterval_s, options_.velocity_decay_per_s + 3);
   }
-  parents_.resize(hypotheses_.size());
-  std::iota(parents_.begin(), parents_.end(), 0);
   ++steps_;
 }
 
@@ -127,30 +127,16 @@ std::vector<MixtureFilter::Child> MixtureFilter::candidates(const CoverageEviden
                            [&](size_t i) { return fitted[i].log_weight - 0.5 * fitted[i].fit.cost(); });
   order.resize(std::min(order.size(), static_cast<size_t>(options_.num_parents)));
 
-  struct Variant {
+  struct Variant : LimbVariant {
     size_t parent;
-    std::vector<size_t> limbs;
-    std::vector<double> pose;
     double energy = 0;
   };
   std::vector<Variant> variants;
   const Eigen::Vector3d eye = fine_->cameras().front().centre_in_world();
   for (const size_t p : order) {
-    const std::span<const double> pose = view(fitted[p].fit.pose);
-    for (size_t l = 0; l < limbs_.size(); ++l) {
-      for (auto& reflected : reflected_limb(body, limbs_[l], pose, eye)) variants.push_back({p, {l}, std::move(reflected)});
-    }
-    for (const auto& [a, b] : pairs_) {
-      std::vector<double> exchanged(pose.begin(), pose.end());
-      for (size_t k = 0; k < limbs_[a].dofs.size(); ++k) {
-        std::swap(exchanged[static_cast<size_t>(limbs_[a].dofs[k])], exchanged[static_cast<size_t>(limbs_[b].dofs[k])]);
-      }
-      variants.push_back({p, {a, b}, std::move(exchanged)});
-    }
     Rng rng(options_.seed, steps_, p);
-    for (int i = 0; i < options_.num_random_limbs && !limbs_.empty(); ++i) {
-      const size_t l = static_cast<size_t>(i) % limbs_.size();
-      variants.push_back({p, {l}, random_limb(body.skeleton, limbs_[l], pose, rng)});
+    for (LimbVariant& variant : limb_variants(body, limbs_, view(fitted[p].fit.pose), eye, options_.num_random_limbs, rng)) {
+      variants.push_back({std::move(variant), p});
     }
   }
   report.num_tried += static_cast<int>(variants.size());
@@ -162,10 +148,18 @@ std::vector<MixtureFilter::Child> MixtureFilter::candidates(const CoverageEviden
   });
   std::ranges::stable_sort(variants, {}, &Variant::energy);
 
+  // The best of each parent that differ from it, and from each other, by more than a fit would bridge.
   std::vector<Child> jumps;
-  std::vector<int> taken(fitted.size(), 0);
+  std::vector<std::vector<std::vector<Eigen::Vector3d>>> known(fitted.size());
+  for (const size_t p : order) known[p].push_back(landmark_positions(body, view(fitted[p].fit.pose)));
   for (const Variant& variant : variants) {
-    if (taken[variant.parent]++ >= options_.num_fitted) continue;
+    auto& of_parent = known[variant.parent];
+    if (std::ssize(of_parent) > options_.num_fitted) continue;
+    std::vector<Eigen::Vector3d> x = landmark_positions(body, variant.pose);
+    if (std::ranges::any_of(of_parent, [&](const auto& other) { return furthest_apart(x, other) < options_.novelty; })) {
+      continue;
+    }
+    of_parent.push_back(std::move(x));
     const Child& parent = fitted[variant.parent];
     Child child;
     child.component = parent.component;
@@ -187,7 +181,6 @@ std::vector<MixtureFilter::Child> MixtureFilter::candidates(const CoverageEviden
     }
     child.prior = prior_of(child.component);
     child.log_weight = parent.log_weight + options_.jump_log_prior;
-    child.parent = parent.parent;
     child.jumped = true;
     jumps.push_back(std::move(child));
   }
@@ -203,27 +196,19 @@ void MixtureFilter::keep_best(std::vector<Child> children, MixtureReport& report
   std::ranges::stable_sort(children, std::greater<>{}, &Child::log_weight);
   std::vector<std::vector<Eigen::Vector3d>> landmarks;
   std::vector<GaussianComponent> kept;
-  std::vector<int> parents;
   for (Child& child : children) {
     std::vector<Eigen::Vector3d> x = landmark_positions(body, view(child.fit.pose));
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const auto& other : landmarks) {
-      double furthest = 0;
-      for (size_t i = 0; i < x.size(); ++i) furthest = std::max(furthest, (x[i] - other[i]).norm());
-      nearest = std::min(nearest, furthest);
-    }
-    if (nearest < options_.merge_distance) continue;
+    const auto is_near = [&](const auto& other) { return furthest_apart(x, other) < options_.merge_distance; };
+    if (std::ranges::any_of(landmarks, is_near)) continue;
     if (kept.empty()) report.energy = child.fit.energy;
     condition_on_pose(child.component, child.fit.pose, child.fit.information);
     child.component.log_weight = child.log_weight;
     report.num_jumps_kept += child.jumped ? 1 : 0;
     kept.push_back(std::move(child.component));
-    parents.push_back(child.parent);
     landmarks.push_back(std::move(x));
     if (std::ssize(kept) == options_.num_hypotheses) break;
   }
   hypotheses_ = std::move(kept);
-  parents_ = std::move(parents);
   normalise_weights(hypotheses_);
 }
 

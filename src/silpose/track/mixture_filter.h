@@ -21,13 +21,14 @@ namespace silpose {
 struct MixtureOptions {
   int num_hypotheses = 4;
   int num_parents = 2;        // of new hypotheses, the best
-  int num_random_limbs = 20;  // tried for each parent
+  int num_random_limbs = 40;  // tried for each parent
   int num_fitted = 3;         // new hypotheses fitted for each parent, the most promising
   double acceleration = 1;    // times motion/noise.h's acceleration_deviation
   double rest_weight = 0.03;  // pose_fit.h
   double velocity_decay_per_s = 0;
   double jump_log_prior = -6;   // log-probability of a hypothesis that jumped
-  double merge_distance = 0.05;  // metres, of the joint that is furthest off
+  double novelty = 0.12;         // metres: new hypotheses have a joint at least as far from their parent
+  double merge_distance = 0.05;  // metres: hypotheses whose every joint is nearer are one
   uint64_t seed = 1;
 };
 
@@ -42,30 +43,30 @@ class MixtureFilter {
   MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine, std::shared_ptr<const CoverageLikelihood> coarse,
                 const MixtureOptions& options);
 
-  // Starts over at poses [K][D], each as likely as `log_weights` [K] say.
-  void start(const std::vector<Eigen::VectorXd>& poses, std::span<const double> log_weights);
+  // Starts over at poses [K][D], equally likely: the first step weighs them.
+  void start(const std::vector<Eigen::VectorXd>& poses);
+
+  // Adds hypotheses, each as likely as the jump prior says against the best there is: the next step decides.
+  void add(const std::vector<Eigen::VectorXd>& poses);
 
   MixtureReport step(const CoverageEvidence& evidence, double dt_s);
   void coast(double dt_s);
 
   // Best first, weights normalised.
   [[nodiscard]] std::span<const GaussianComponent> hypotheses() const { return hypotheses_; }
-  // Of each hypothesis: the index, in the step before, of the one that it comes from.
-  [[nodiscard]] std::span<const int> parents() const { return parents_; }
 
  private:
   struct Child;
   std::vector<Child> candidates(const CoverageEvidence& evidence, const std::vector<Child>& fitted,
                                 MixtureReport& report) const;
+  [[nodiscard]] GaussianComponent component_of(const Eigen::VectorXd& pose, double log_weight) const;
   void keep_best(std::vector<Child> children, MixtureReport& report);
 
   std::shared_ptr<const CoverageLikelihood> fine_, coarse_;
   MixtureOptions options_;
   std::vector<Limb> limbs_;
-  std::vector<std::pair<size_t, size_t>> pairs_;  // of limbs that are alike
   std::vector<double> acceleration_;              // [D]
   std::vector<GaussianComponent> hypotheses_;
-  std::vector<int> parents_;
   uint64_t steps_ = 0;
 };
 

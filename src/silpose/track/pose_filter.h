@@ -35,6 +35,9 @@ class PoseFilter {
   // Starts over around poses, best first; a filter may take the first alone. REQUIRES: at least one.
   virtual void start(std::span<const StartingPose> starts) = 0;
 
+  // Takes poses found elsewhere into account from the next step on. A filter that cannot use them leaves them.
+  virtual void add(std::span<const StartingPose> starts) { (void)starts; }
+
   // Shapes: one observation a camera, at least one with a say; `dt_s` seconds since the last call.
   virtual FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) = 0;
   virtual FilterReport coast(double dt_s) = 0;

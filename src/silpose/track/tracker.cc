@@ -26,6 +26,10 @@ bool any_has_a_say(std::span<const Observation> observations) {
                      [](const Observation& o) { return !o.trust.nothing_found && o.trust.overall >= kLeastTrust; });
 }
 
+// A fit worse than this may be in a wrong basin: the pose is sought anew, first soon, then less and less often.
+constexpr double kGoodAccuracy = 0.92;
+constexpr double kFirstSeek_s = 0.12, kLongestSeek_s = 4;
+
 }  // namespace
 
 struct Tracker::Impl {
@@ -79,12 +83,28 @@ struct Tracker::Impl {
     last_pose = report.pose;
   }
 
+  // Where the best hypothesis fits badly, new ones from scratch compete with it.
+  void seek_anew(std::span<const Observation> observations, double dt_s, StepReport& report) {
+    since_seek_s += dt_s;
+    if (report.visual_accuracy >= kGoodAccuracy) {
+      seek_interval_s = kFirstSeek_s;
+      return;
+    }
+    if (!options.num_hypotheses || since_seek_s < seek_interval_s) return;
+    const Stopwatch stopwatch;
+    filter->add(starting_poses(observations));
+    since_seek_s = 0;
+    seek_interval_s = std::min(2 * seek_interval_s, kLongestSeek_s);
+    report.seconds.start += stopwatch.seconds();
+  }
+
   TrackerOptions options;
   Likelihoods likelihoods;
   std::unique_ptr<PoseFilter> filter;
   std::vector<std::unique_ptr<Segmenter>> segmenters;  // online, one a camera; made when first needed
   std::vector<double> last_pose;
   bool started = false;
+  double seek_interval_s = kFirstSeek_s, since_seek_s = 0;
   int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
 };
 
@@ -112,6 +132,8 @@ StepReport Tracker::step(std::span<const Observation> observations, int64_t fram
     const Stopwatch stopwatch;
     t.filter->start(t.starting_poses(observations));
     t.started = true;
+    t.seek_interval_s = kFirstSeek_s;
+    t.since_seek_s = 0;
     report.state = StepReport::State::kInitialised;
     report.seconds.start += stopwatch.seconds();
     report.effective_sample_size = t.filter->step(observations, 0, report.seconds).effective_sample_size;
@@ -123,6 +145,7 @@ StepReport Tracker::step(std::span<const Observation> observations, int64_t fram
     report.effective_sample_size = t.filter->coast(dt_s).effective_sample_size;
   }
   if (t.started) t.summarise(observations, report);
+  if (t.started && seen) t.seek_anew(observations, dt_s, report);
 
   ++t.steps;
   t.last_time_ns = time_ns;
