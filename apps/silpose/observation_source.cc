@@ -82,8 +82,8 @@ void add_input_options(CLI::App& command, InputOptions& options) {
   command
       .add_option("--fps", options.default_fps, "Frames a second of input that carries no rate (30, with a warning)")
       ->check(within(0.1, 10000));
-  command.add_option("--start", options.start_s, "Seconds into the clip to begin at")->check(within(0, 1e6));
-  command.add_option("--end", options.end_s, "Seconds into the clip to end at, included")
+  command.add_option("--start", options.start_s, "Seconds (time_s of the results) to begin at")->check(within(0, 1e6));
+  command.add_option("--end", options.end_s, "Seconds to end at, included")
       ->check(within(0, 1e6));
 }
 
@@ -139,13 +139,17 @@ Result<std::optional<Instant>> ObservationSource::next() {
     Result<std::optional<Frame>> frame = video_->next();
     if (!frame) return frame.failure();
     if (!frame->has_value() || (*frame)->index > last_frame_) return std::optional<Instant>();
-    const bool wanted = (*frame)->index >= first_index();
+    bool wanted = (*frame)->index >= first_frame_;
+    for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
+      wanted = wanted && video_->own_index(static_cast<int>(camera)) >= segmenters_[camera]->first_index();
+    }
     Instant instant;
     for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
       // A background learned online has to see what goes before the first frame that is wanted.
       if (!wanted && !segmenters_[camera]->name().starts_with("background online")) continue;
       const Stopwatch segmenting;
-      Result<Segmentation> segmentation = segmenters_[camera]->segment((*frame)->images[camera], (*frame)->index);
+      Result<Segmentation> segmentation = segmenters_[camera]->segment(
+          (*frame)->images[camera], video_->own_index(static_cast<int>(camera)));
       segment_s += segmenting.seconds();
       if (!segmentation) return segmentation.failure();
       instant.observations.push_back(observation_from(std::move(*segmentation)));
@@ -170,7 +174,9 @@ std::vector<PictureSize> ObservationSource::sizes() const {
 
 int64_t ObservationSource::num_expected() const {
   if (video_->num_frames_hint() <= 0) return 0;
-  return std::max<int64_t>(0, std::min(video_->num_frames_hint() - 1, last_frame_) - first_index() + 1);
+  const int64_t before = video_->first_index();
+  const int64_t end = std::min(before + video_->num_frames_hint() - 1, last_frame_) + 1;
+  return std::max<int64_t>(0, end - std::max(before, first_index()));
 }
 
 std::string ObservationSource::background() const {

@@ -73,10 +73,17 @@ class CaptureSource : public FrameSource {
   int width_ = 0, height_ = 0;
 };
 
+struct Pictures {
+  std::vector<fs::path> paths;
+  std::vector<int64_t> numbers = {};  // one a path, growing; or none
+};
+
 class PictureSource : public FrameSource {
  public:
-  explicit PictureSource(std::vector<fs::path> paths) : paths_(std::move(paths)) {}
+  explicit PictureSource(Pictures pictures)
+      : paths_(std::move(pictures.paths)), numbers_(std::move(pictures.numbers)) {}
 
+  [[nodiscard]] std::span<const int64_t> numbers() const override { return numbers_; }
   [[nodiscard]] int64_t num_frames_hint() const override { return static_cast<int64_t>(paths_.size()); }
   Result<std::optional<ByteImage>> next() override {
     if (next_ == paths_.size()) return std::optional<ByteImage>();
@@ -91,6 +98,7 @@ class PictureSource : public FrameSource {
 
  private:
   std::vector<fs::path> paths_;
+  std::vector<int64_t> numbers_;
   size_t next_ = 0;
 };
 
@@ -115,12 +123,49 @@ Result<std::vector<fs::path>> files_in(const fs::path& folder) {
   return paths;
 }
 
-Result<std::vector<fs::path>> pictures_in(const fs::path& folder) {
+// Larger numbers at the end of a name are a date or a clock rather than a count.
+constexpr int64_t kLargestNumber = 99'999'999;
+
+// "walk_000030.png" is "walk_" and 30.
+std::optional<std::pair<std::string, int64_t>> split_name(const fs::path& path) {
+  const std::string stem = path.stem().string();
+  const size_t digits = stem.find_last_not_of("0123456789") + 1;
+  int64_t number = 0;
+  const auto [end, failure] = std::from_chars(stem.data() + digits, stem.data() + stem.size(), number);
+  if (digits == stem.size() || failure != std::errc() || number > kLargestNumber) return {};
+  return std::pair(stem.substr(0, digits), number);
+}
+
+// The numbers of names that are one text and a number each; nothing where any is not.
+std::vector<int64_t> numbers_of(const std::vector<fs::path>& paths) {
+  std::vector<int64_t> numbers;
+  std::string text;
+  for (const fs::path& path : paths) {
+    const auto name = split_name(path);
+    if (!name || (!numbers.empty() && name->first != text)) return {};
+    text = name->first;
+    numbers.push_back(name->second);
+  }
+  return numbers;
+}
+
+// In the order of their numbers where all have one, of their names otherwise.
+Result<Pictures> pictures_in(const fs::path& folder) {
   Result<std::vector<fs::path>> paths = files_in(folder);
-  if (!paths) return paths;
+  if (!paths) return paths.failure();
   std::erase_if(*paths, [](const fs::path& path) { return !is_picture_name(path); });
   if (paths->empty()) return error("{}: no pictures in this directory", folder.string());
-  return paths;
+  const auto number = [](const fs::path& path) { return split_name(path)->second; };
+  if (!numbers_of(*paths).empty()) std::ranges::stable_sort(*paths, {}, number);
+  Pictures pictures{.paths = std::move(*paths)};
+  pictures.numbers = numbers_of(pictures.paths);
+  const auto twice = std::ranges::adjacent_find(pictures.numbers);
+  if (twice != pictures.numbers.end()) {
+    const auto at = static_cast<size_t>(twice - pictures.numbers.begin());
+    return error("{}: {} and {} have the same number", folder.string(), pictures.paths[at].filename().string(),
+                 pictures.paths[at + 1].filename().string());
+  }
+  return pictures;
 }
 
 // The pieces of "name-%06d.png".
@@ -141,7 +186,7 @@ std::optional<Pattern> parse_pattern(const std::string& name) {
 }
 
 // In the order of their numbers, which must follow one another.
-Result<std::vector<fs::path>> pictures_of_pattern(const fs::path& input, const Pattern& pattern) {
+Result<Pictures> pictures_of_pattern(const fs::path& input, const Pattern& pattern) {
   const fs::path folder = input.has_parent_path() ? input.parent_path() : fs::path(".");
   const Result<std::vector<fs::path>> files = files_in(folder);
   if (!files) return files.failure();
@@ -162,13 +207,15 @@ Result<std::vector<fs::path>> pictures_of_pattern(const fs::path& input, const P
   }
   if (numbered.empty()) return error("{}: no picture has such a name", input.string());
   std::sort(numbered.begin(), numbered.end());
-  std::vector<fs::path> paths;
+  Pictures pictures;
   for (const auto& [number, path] : numbered) {
-    const int64_t expected = numbered.front().first + static_cast<int64_t>(paths.size());
+    const int64_t expected = numbered.front().first + std::ssize(pictures.paths);
     if (number != expected) return error("{}: picture number {} is missing", input.string(), expected);
-    paths.push_back(path);
+    pictures.paths.push_back(path);
+    pictures.numbers.push_back(number);
   }
-  return paths;
+  if (pictures.numbers.back() > kLargestNumber) pictures.numbers.clear();
+  return pictures;
 }
 
 // FFmpeg takes some text files for videos (it draws them).
@@ -183,9 +230,9 @@ Result<std::unique_ptr<FrameSource>> open_capture(const std::string& input, std:
   return std::unique_ptr<FrameSource>(std::move(source));
 }
 
-Result<std::unique_ptr<FrameSource>> open_pictures(Result<std::vector<fs::path>> paths) {
-  if (!paths) return paths.failure();
-  return std::unique_ptr<FrameSource>(std::make_unique<PictureSource>(std::move(*paths)));
+Result<std::unique_ptr<FrameSource>> open_pictures(Result<Pictures> pictures) {
+  if (!pictures) return pictures.failure();
+  return std::unique_ptr<FrameSource>(std::make_unique<PictureSource>(std::move(*pictures)));
 }
 
 }  // namespace
@@ -223,7 +270,7 @@ Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& input)
   start.resize(static_cast<size_t>(stream.gcount()));
   if (stream.bad() || !stream.is_open()) return error("{}: cannot be read", input);
   if (start.empty()) return error("{}: the file is empty", input);
-  if (is_picture_name(path)) return open_pictures(std::vector<fs::path>{path});
+  if (is_picture_name(path)) return open_pictures(Pictures{.paths = {path}});
   if (is_text(start)) return error("{}: not a video", input);
   return open_capture(input, {});
 }

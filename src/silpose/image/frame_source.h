@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "silpose/base/result.h"
@@ -21,6 +22,8 @@ class FrameSource {
   [[nodiscard]] virtual double fps() const { return 0; }               // 0: carries no rate
   [[nodiscard]] virtual int64_t num_frames_hint() const { return 0; }  // 0: unknown
   [[nodiscard]] virtual bool is_live() const { return false; }
+  // Of its pictures, growing; empty: they are counted from 0.
+  [[nodiscard]] virtual std::span<const int64_t> numbers() const { return {}; }
 
   // [H, W, 3] The next picture, nothing at the end.
   virtual Result<std::optional<ByteImage>> next() = 0;

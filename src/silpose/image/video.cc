@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <span>
 
 #include "silpose/base/clock.h"
 #include "silpose/image/frame_source.h"
@@ -19,7 +21,8 @@ struct Video::Impl {
   std::string name;
   double fps = 0;
   bool fps_assumed = false, live = false, ended = false, truncated = false;
-  int64_t hint = 0, next_index = 0;
+  int64_t hint = 0, num_read = 0;
+  std::vector<int64_t> numbers;  // of the frames; empty: counted from 0
   Stopwatch since_start;  // the time of live pictures
 
   static Result<Camera> open_camera(const std::string& input) {
@@ -36,7 +39,21 @@ struct Video::Impl {
   }
 
   // A container's count may be off by a frame or so (edit lists, a duration that is rounded).
-  [[nodiscard]] bool ends_early() const { return hint - next_index > std::max<int64_t>(2, hint / 100); }
+  [[nodiscard]] bool ends_early() const { return hint - num_read > std::max<int64_t>(2, hint / 100); }
+
+  // Numbers that all cameras' pictures share, as far as the shortest goes.
+  void take_numbers() {
+    const std::span<const int64_t> first = cameras[0].source->numbers();
+    numbers.assign(first.begin(), first.end());
+    for (const Camera& camera : cameras) {
+      const std::span<const int64_t> other = camera.source->numbers();
+      numbers.resize(std::min(numbers.size(), other.size()));
+      if (!std::equal(numbers.begin(), numbers.end(), other.begin())) numbers.clear();
+    }
+  }
+  [[nodiscard]] int64_t index_of(int64_t ordinal) const {
+    return numbers.empty() ? ordinal : numbers[static_cast<size_t>(std::min(ordinal, std::ssize(numbers) - 1))];
+  }
 };
 
 Video::Video(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -51,16 +68,22 @@ double Video::fps() const { return impl_->fps; }
 bool Video::fps_assumed() const { return impl_->fps_assumed; }
 bool Video::is_live() const { return impl_->live; }
 int64_t Video::num_frames_hint() const { return impl_->hint; }
+int64_t Video::first_index() const { return impl_->index_of(0); }
+int64_t Video::own_index(int camera) const {
+  const std::span<const int64_t> numbers = impl_->cameras.at(static_cast<size_t>(camera)).source->numbers();
+  const int64_t ordinal = std::max<int64_t>(0, impl_->num_read - 1);
+  return numbers.empty() ? ordinal : numbers[static_cast<size_t>(ordinal)];
+}
 const std::string& Video::name() const { return impl_->name; }
 bool Video::truncated() const { return impl_->truncated; }
 
 Result<std::optional<Frame>> Video::next() {
   Impl& impl = *impl_;
   if (impl.ended) return std::optional<Frame>();
-  Frame frame{.index = impl.next_index, .time_ns = 0, .images = {}};
+  Frame frame{.index = impl.index_of(impl.num_read), .time_ns = 0, .images = {}};
   if (impl.live) {
-    if (frame.index == 0) impl.since_start.restart();
-    frame.time_ns = frame.index == 0 ? 0 : std::llround(impl.since_start.seconds() * 1e9);
+    if (impl.num_read == 0) impl.since_start.restart();
+    frame.time_ns = impl.num_read == 0 ? 0 : std::llround(impl.since_start.seconds() * 1e9);
   } else {
     frame.time_ns = std::llround(static_cast<double>(frame.index) * 1e9 / impl.fps);
   }
@@ -81,7 +104,7 @@ Result<std::optional<Frame>> Video::next() {
     }
     frame.images.push_back(std::move(picture));
   }
-  ++impl.next_index;
+  ++impl.num_read;
   return std::optional<Frame>(std::move(frame));
 }
 
@@ -90,7 +113,7 @@ Result<void> Video::rewind() {
     camera.first.reset();
     if (Result<void> rewound = camera.source->rewind(); !rewound) return rewound;
   }
-  impl_->next_index = 0;
+  impl_->num_read = 0;
   impl_->ended = impl_->truncated = false;
   return {};
 }
@@ -113,6 +136,7 @@ Result<Video> open_video(const std::vector<std::string>& inputs, const VideoOpti
     impl->name += (impl->name.empty() ? "" : " ") + input;
     impl->cameras.push_back(std::move(*camera));
   }
+  impl->take_numbers();
   impl->fps_assumed = impl->fps == 0;
   if (impl->fps_assumed) impl->fps = options.default_fps;
   return Video(std::move(impl));

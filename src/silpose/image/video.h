@@ -36,6 +36,10 @@ class Video {
   [[nodiscard]] bool is_live() const;           // a camera: cannot rewind
   // Frames as the container tells (0: unknown); the truth is known at the end.
   [[nodiscard]] int64_t num_frames_hint() const;
+  // Of the first frame: 0, or the number of the first of numbered pictures.
+  [[nodiscard]] int64_t first_index() const;
+  // Of a camera's picture in the last frame, had the camera been opened alone: Frame::index unless numbers differ.
+  [[nodiscard]] int64_t own_index(int camera) const;
   [[nodiscard]] const std::string& name() const;
 
   // The next frame, nothing at the end. Errors: an image whose size differs from the first one's; a stream that breaks
@@ -72,8 +76,12 @@ class Video {
   std::unique_ptr<Impl> impl_;
 };
 
-// Opens a file, a directory of pictures (in name order), a printf pattern ("img-%06d.png") or "camera:N".
-// Errors: missing, empty, not a video, no frame in it; several inputs whose rates differ by more than 1 %.
+// Opens a file, a directory of pictures, a printf pattern ("img-%06d.png") or "camera:N".
+// Pictures whose names are one text and a number up to 99,999,999 each (000030.png, walk-7.png) come in the order of
+// their numbers, which are the indices of their frames; gaps stay gaps, in time too. Other pictures come in the order
+// of their names, counted from 0. So do those of several inputs whose numbers differ.
+// Errors: missing, empty, not a video, no frame in it, a number that is there twice; several inputs whose rates differ
+// by more than 1 %.
 Result<Video> open_video(const std::vector<std::string>& inputs, const VideoOptions& options = {});
 Result<Video> open_video(const std::string& input, const VideoOptions& options = {});
 

@@ -127,8 +127,12 @@ TEST_F(VideoTest, PatternFollowsTheNumbers) {
   write_pictures("img-{:03}.png", 8, 4);
   write_image(at("img-9.png"), picture(5)).value();  // too few digits: another name
   Video video = open_video(at("img-%03d.png")).value();
+  EXPECT_EQ(video.first_index(), 8);
   int index = 8;
-  for (const Frame& frame : video) EXPECT_EQ(frame.images[0], picture(index++ % 12));
+  for (const Frame& frame : video) {
+    EXPECT_EQ(frame.index, index);
+    EXPECT_EQ(frame.images[0], picture(index++ % 12));
+  }
   EXPECT_EQ(index, 12);
 
   fs::remove(at("img-009.png"));
@@ -141,6 +145,63 @@ TEST_F(VideoTest, UnpaddedPatternOrdersByNumberNotByName) {
   Video video = open_video(at("%d.png")).value();
   EXPECT_EQ(video.next().value()->images[0], picture(9));
   EXPECT_EQ(video.next().value()->images[0], picture(10));
+}
+
+TEST_F(VideoTest, NumbersOfPicturesAreTheirFrames) {
+  for (const int i : {30, 31, 35}) write_image(at(fmt::format("walk_{:06}.png", i)), picture(i % 12)).value();
+  Video video = open_video(folder_.string(), {.default_fps = 10}).value();
+  EXPECT_EQ(video.first_index(), 30);
+  EXPECT_EQ(video.num_frames_hint(), 3);
+  for (int pass = 0; pass < 2; ++pass) {
+    for (const int i : {30, 31, 35}) {
+      const Frame frame = video.next().value().value();
+      EXPECT_EQ(frame.index, i);
+      EXPECT_EQ(frame.time_ns, int64_t{100'000'000} * i);
+      EXPECT_EQ(frame.images[0], picture(i % 12));
+    }
+    EXPECT_FALSE(video.next().value().has_value());
+    ASSERT_TRUE(video.rewind().ok());
+  }
+}
+
+TEST_F(VideoTest, NumberedPicturesComeInTheOrderOfTheirNumbers) {
+  write_pictures("img{}.png", 9, 2);
+  Video video = open_video(folder_.string()).value();
+  EXPECT_EQ(video.next().value()->index, 9);
+  EXPECT_EQ(video.next().value()->index, 10);
+
+  write_image(at("img010.jpg"), picture(1)).value();
+  EXPECT_THAT(open_video(folder_.string()).error().message, EndsWith("img010.jpg and img10.png have the same number"));
+}
+
+TEST_F(VideoTest, OtherNamesAreCountedFromZero) {
+  const std::vector<std::string> sets[] = {{"a_07.png", "b_05.png"}, {"07.png", "last.png"}, {"20240101120000.png"}};
+  for (const std::vector<std::string>& names : sets) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    for (size_t i = 0; i < names.size(); ++i) write_image(at(names[i]), picture(static_cast<int>(i))).value();
+    Video video = open_video(folder_.string()).value();
+    EXPECT_EQ(video.next().value()->images[0], picture(0)) << names[0];
+    EXPECT_EQ(count_frames(video = open_video(folder_.string()).value()), std::ssize(names)) << names[0];
+  }
+}
+
+TEST_F(VideoTest, CamerasKeepTheNumbersThatTheyShare) {
+  for (const char* name : {"a", "b", "c"}) fs::create_directories(at(name));
+  write_pictures("a/{}.png", 5, 4);
+  write_pictures("b/{:03}.png", 5, 3);
+  write_pictures("c/{}.png", 6, 3);
+  Video same = open_video(std::vector<std::string>{at("a"), at("b")}).value();
+  EXPECT_EQ(same.first_index(), 5);
+  int64_t last = 0;
+  for (const Frame& frame : same) last = frame.index;
+  EXPECT_EQ(last, 7);
+  Video other = open_video(std::vector<std::string>{at("a"), at("c")}).value();
+  EXPECT_EQ(other.next().value()->index, 0);
+  EXPECT_EQ(other.own_index(0), 5);
+  EXPECT_EQ(other.own_index(1), 6);
+  Video mixed = open_video(std::vector<std::string>{at("a"), write_clip("clip.mp4", 4, 30)}).value();
+  EXPECT_EQ(count_frames(mixed), 4);
 }
 
 TEST_F(VideoTest, ChangeOfSizeNamesTheFrame) {

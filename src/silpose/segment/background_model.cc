@@ -122,18 +122,20 @@ Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t>
   }
   int64_t stride = std::max<int64_t>(1, (expected + limit - 1) / limit);
   BackgroundSamples samples;
-  while (true) {
+  std::optional<int64_t> first_ns;
+  for (int64_t done = 0;;) {
     Result<std::optional<Frame>> frame = video.next();
     if (!frame) return frame.failure();
-    if (!frame->has_value() || (end_ns && (*frame)->time_ns >= *end_ns)) break;
-    const int64_t index = (*frame)->index;
-    if (index % stride == 0) samples.images.push_back(to_luma_chroma((*frame)->images[0]));
+    if (!frame->has_value()) break;
+    if (!first_ns) first_ns = (*frame)->time_ns;  // not 0 where pictures are numbered
+    if (end_ns && (*frame)->time_ns - *first_ns >= *end_ns) break;
+    if (done++ % stride == 0) samples.images.push_back(to_luma_chroma((*frame)->images[0]));
     if (static_cast<int64_t>(samples.images.size()) > limit) {  // longer than was told: keep every other one
       for (size_t i = 0; 2 * i < samples.images.size(); ++i) samples.images[i] = std::move(samples.images[2 * i]);
       samples.images.resize((samples.images.size() + 1) / 2);
       stride *= 2;
     }
-    if (progress != nullptr && !progress->update("background", index + 1, expected)) {
+    if (progress != nullptr && !progress->update("background", done, expected)) {
       return error("{}: stopped while its background was learned", video.name());
     }
   }

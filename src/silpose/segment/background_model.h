@@ -30,7 +30,7 @@ struct BackgroundSamples {
   std::vector<ByteImage> images;  // each [H, W, 3]
 };
 
-// Reads all frames, keeps some. Only frames with time_ns < end_ns, when given.
+// Reads all frames, keeps some. Only frames less than end_ns after the first, when given.
 // Errors: those of Video::next(); no frame before end_ns; stopped by the progress sink.
 Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t> end_ns = {},
                                             ProgressSink* progress = nullptr);

@@ -21,8 +21,8 @@ Mask white_of(const ByteImage& image) {
 
 class GivenMasks : public Segmenter {
  public:
-  GivenMasks(std::optional<Video> masks, const CleanUpOptions& clean_up)
-      : masks_(std::move(masks)), clean_up_(clean_up) {
+  GivenMasks(std::optional<Video> masks, int64_t offset, const CleanUpOptions& clean_up)
+      : masks_(std::move(masks)), offset_(offset), clean_up_(clean_up) {
     is_cleaned_ = clean_up.region || clean_up.garbage_mask || clean_up.grow_px != 0 || clean_up.min_blob_px > 0;
     clean_up_.max_hole = clean_up_.join_gap = 0;  // whoever made the masks meant their holes and gaps
     clean_up_.min_blob_px = std::max(clean_up_.min_blob_px, 0);
@@ -34,12 +34,11 @@ class GivenMasks : public Segmenter {
     while (true) {
       Result<std::optional<Frame>> frame = masks_->next();
       if (!frame) return frame.failure();
-      if (!frame->has_value()) {
+      if (!frame->has_value() || (*frame)->index + offset_ > index) {
         return error("{}: {} masks, frame {} has none", masks_->name(), num_read_, index);
       }
-      num_read_ = (*frame)->index + 1;
-      check((*frame)->index <= index, "GivenMasks: frame {} after frame {}", index, (*frame)->index);
-      if ((*frame)->index < index) continue;
+      ++num_read_;
+      if ((*frame)->index + offset_ < index) continue;
       const ByteImage& mask = (*frame)->images[0];
       if (mask.width() != image.width() || mask.height() != image.height()) {
         return error("{}: mask {} is {}x{}, its picture {}x{}", masks_->name(), index, mask.width(), mask.height(),
@@ -49,11 +48,13 @@ class GivenMasks : public Segmenter {
     }
   }
   [[nodiscard]] std::string name() const override { return "masks"; }
+  [[nodiscard]] int64_t first_index() const override { return masks_ ? masks_->first_index() + offset_ : 0; }
 
  private:
   Segmentation judge(const Mask& mask) { return monitor_.judge(is_cleaned_ ? choose_blob(mask, clean_up_) : mask); }
 
   std::optional<Video> masks_;
+  int64_t offset_;
   CleanUpOptions clean_up_;
   bool is_cleaned_ = false;
   int64_t num_read_ = 0;
@@ -62,8 +63,8 @@ class GivenMasks : public Segmenter {
 
 }  // namespace
 
-std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, const CleanUpOptions& clean_up) {
-  return std::make_unique<GivenMasks>(std::move(masks), clean_up);
+std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, int64_t offset, const CleanUpOptions& clean_up) {
+  return std::make_unique<GivenMasks>(std::move(masks), offset, clean_up);
 }
 
 }  // namespace silpose

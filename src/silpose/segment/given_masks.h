@@ -3,6 +3,7 @@
 // Threads: one thread per segmenter.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -11,7 +12,8 @@
 
 namespace silpose {
 
-// Mask number i belongs to picture number i; without `masks` every picture is its own mask. White (>= 128) is set.
-std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, const CleanUpOptions& clean_up);
+// Mask number i belongs to picture number i + offset; without `masks` every picture is its own mask. White (>= 128) is
+// set.
+std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, int64_t offset, const CleanUpOptions& clean_up);
 
 }  // namespace silpose

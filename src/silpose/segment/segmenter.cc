@@ -53,19 +53,23 @@ Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const Se
   Result<Video> video = open_video(input, {.default_fps = options.default_fps});
   if (!video) return video.failure();
   if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
-  if (options.masks.empty()) return make_given_masks({}, options.clean_up);
+  if (options.masks.empty()) return make_given_masks({}, 0, options.clean_up);
   Result<Video> masks = open_video(options.masks, {.default_fps = options.default_fps});
   if (!masks) return masks.failure();
   if (masks->width() != video->width() || masks->height() != video->height()) {
     return error("{}: masks of {}x{} for pictures of {}x{}", options.masks, masks->width(), masks->height(),
                  video->width(), video->height());
   }
-  // A container's own count may be off by one.
+  // As many masks as frames (a container's own count may be off by one) belong together in their order, whatever number
+  // they begin with; others by their numbers.
   const int64_t num_masks = masks->num_frames_hint(), num_frames = video->num_frames_hint();
-  if (num_masks > 0 && num_masks + 1 < num_frames) {
+  const bool in_order = std::abs(num_masks - num_frames) <= 1;
+  const int64_t offset = in_order ? video->first_index() - masks->first_index() : 0;
+  const int64_t masks_end = masks->first_index() + offset + num_masks, frames_end = video->first_index() + num_frames;
+  if (num_masks > 0 && num_frames > 0 && (masks_end + 1 < frames_end || masks->first_index() + offset >= frames_end)) {
     return error("{}: {} masks for {} frames of {}", options.masks, num_masks, num_frames, input);
   }
-  return make_given_masks(std::move(*masks), options.clean_up);
+  return make_given_masks(std::move(*masks), offset, options.clean_up);
 }
 
 // A picture, or a clip of the empty scene.
@@ -129,7 +133,7 @@ Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, con
     if (video.is_live()) return error("{}: the background of a live camera is learned online", input);
     Result<BackgroundSamples> samples = sample_background(video, std::llround(seconds * 1e9), progress);
     if (!samples) return samples.failure();
-    made.first_index = static_cast<int64_t>(std::ceil(seconds * video.fps() - 1e-6));
+    made.first_index = video.first_index() + static_cast<int64_t>(std::ceil(seconds * video.fps() - 1e-6));
     if (Result<std::optional<Frame>> after = video.next(); !after) {
       return after.failure();
     } else if (!after->has_value()) {

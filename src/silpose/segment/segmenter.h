@@ -45,7 +45,9 @@ class Segmenter {
 struct SegmenterOptions {
   std::string kind = "auto";        // auto, background, masks
   std::string background = "auto";  // auto, online, online:knn, lead-in:SECONDS, a video, a picture
-  std::string masks;                // a directory, a pattern, a video; empty with kind masks: the input itself
+  // A directory, a pattern, a video; empty with kind masks: the input itself. As many as frames belong to them in order,
+  // otherwise mask number i to frame number i.
+  std::string masks;
   double default_fps = 30;          // of input that carries no rate
   CleanUpOptions clean_up;  // given masks stay as they are unless a region, a garbage mask or growth is asked for
 };
@@ -53,7 +55,7 @@ struct SegmenterOptions {
 // For one camera's input as open_video() takes it. Reads the input, or its lead-in, once where a background is learned
 // from it. `auto` is masks where masks are given and background otherwise; a live input's background is learned online.
 // Errors: unknown kind or background; the input, the plate or the masks cannot be read, or have another size than the
-// input; fewer masks than frames where both are known; no frame in the lead-in; stopped by the progress sink.
+// input; masks that end before the frames do; no frame in the lead-in; stopped by the progress sink.
 Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, const SegmenterOptions& options = {},
                                                   ProgressSink* progress = nullptr);
 

@@ -38,9 +38,11 @@ class SegmenterTest : public testing::Test {
   [[nodiscard]] Mask truth(int index) const { return scene_.subject(place(index)); }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
-  void write_masks(const std::string& name, int count) const {
+  void write_masks(const std::string& name, int count, int first = 0, int first_number = 0) const {
     fs::create_directories(folder_ / name);
-    for (int i = 0; i < count; ++i) write_mask(folder_ / name / fmt::format("{:03}.png", i), truth(i)).value();
+    for (int i = 0; i < count; ++i) {
+      write_mask(folder_ / name / fmt::format("{:03}.png", first_number + i), truth(first + i)).value();
+    }
   }
 
   // From frame `first` on.
@@ -112,6 +114,38 @@ TEST_F(SegmenterTest, GivenMasksComeThroughUnchanged) {
   for (int i : {12, 13, 30, 49}) {  // indices may skip
     EXPECT_EQ(segmenter->segment(picture(i), i).value().mask, truth(i)) << i;
   }
+}
+
+TEST_F(SegmenterTest, MasksThatBeginLaterBelongToTheFramesOfTheirNumbers) {
+  write_masks("masks", kFrames - 20, 20, 20);
+  const auto segmenter = make_segmenter(at("clip"), {.masks = at("masks")}).value();
+  EXPECT_EQ(segmenter->first_index(), 20);
+  EXPECT_EQ(segmenter->segment(picture(30), 30).value().mask, truth(30));
+}
+
+TEST_F(SegmenterTest, AsManyMasksAsFramesBelongTogetherInOrder) {
+  write_masks("masks", kFrames, 0, 1);  // numbered from 1, as some programs do
+  const auto segmenter = make_segmenter(at("clip"), {.masks = at("masks")}).value();
+  EXPECT_EQ(segmenter->first_index(), 0);
+  EXPECT_EQ(segmenter->segment(picture(30), 30).value().mask, truth(30));
+}
+
+TEST_F(SegmenterTest, MasksOfOtherFramesAreRefused) {
+  write_masks("after", 20, 0, 50);
+  EXPECT_THAT(failure({.masks = at("after")}), HasSubstr("after: 20 masks for 50 frames of"));
+  write_masks("gap", kFrames);
+  fs::remove(at("gap/031.png"));
+  const auto segmenter = make_segmenter(at("clip"), {.masks = at("gap")}).value();
+  EXPECT_TRUE(segmenter->segment(picture(30), 30).ok());
+  EXPECT_THAT(segmenter->segment(picture(31), 31).error().message, HasSubstr("frame 31 has none"));
+}
+
+TEST_F(SegmenterTest, LeadInCountsFromTheFirstPictureWhateverItsNumber) {
+  fs::create_directories(at("later"));
+  for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("later/{}.png", 200 + i)), picture(i)).value();
+  const auto segmenter = make_segmenter(at("later"), {.background = "lead-in:1", .default_fps = 10}).value();
+  EXPECT_EQ(segmenter->first_index(), 210);
+  EXPECT_GT(intersection_over_union(segmenter->segment(picture(30), 230).value().mask, truth(30)), 0.9);
 }
 
 TEST_F(SegmenterTest, TheInputItselfMayBeTheMasks) {
