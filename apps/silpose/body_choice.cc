@@ -38,12 +38,28 @@ std::string file_name_of(std::string model) {
 
 }  // namespace
 
+CLI::Validator is_model() {
+  return CLI::Validator(
+      [](const std::string& model) -> std::string {
+        if (fs::path(model).extension() == ".body") return "";
+        if (!is_human(model)) return fmt::format("{}: unknown model (human, human:key=value,... or a .body file)", model);
+        try {
+          const Result<Phenotype> phenotype = parse_phenotype(without_dof(model));
+          return phenotype ? "" : phenotype.error().message;
+        } catch (const UsageError& wrong) {
+          return wrong.what();
+        }
+      },
+      "");
+}
+
 void add_model_option(CLI::App& command, std::string& model) {
   command
       .add_option(
           "--model", model,
           "The body: human, human:age=30,sex=f,height=1.62,weight=58,muscle=0.5 (years, m, kg), or a .body file")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(is_model());
 }
 
 fs::path data_directory() {

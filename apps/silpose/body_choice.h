@@ -13,6 +13,9 @@
 
 namespace silpose::app {
 
+// A check for options: "human", "human:..." that can be understood, or the path of a .body file.
+CLI::Validator is_model();
+
 void add_model_option(CLI::App& command, std::string& model);
 
 // Where the fetched body data lies: $SILPOSE_DATA, else data/ of the source tree this was built from, else

@@ -114,7 +114,9 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions&) {
   build->add_flag("--if-older", options->if_older,
                   "Only where the file is missing or older than the program or the data");
   CLI::App* const inspect = model->add_subcommand("inspect", "What a body is made of, and the limits of its DOF");
-  inspect->add_option("MODEL,--model", options->model, "As --model elsewhere")->capture_default_str();
+  inspect->add_option("MODEL,--model", options->model, "As --model elsewhere")
+      ->capture_default_str()
+      ->check(is_model());
   CLI::App* const lod = model->add_subcommand("lod", "The same body with fewer vertices");
   add_model_option(*lod, options->model);
   add_body_file_option(*lod, options->out);

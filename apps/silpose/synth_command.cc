@@ -8,6 +8,7 @@
 #include "apps/silpose/command.h"
 #include "apps/silpose/result_directory.h"
 #include "apps/silpose/run_facts.h"
+#include "silpose/exchange/clip_file.h"
 #include "silpose/synth/sequence_files.h"
 
 namespace silpose::app {
@@ -57,6 +58,7 @@ Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions&
                                                       .amplitude_deg = options.amplitude_deg,
                                                       .period_s = options.period_s,
                                                       .seed = common.seed});
+  if (!motion && !is_clip_file(options.motion)) throw UsageError(fmt::format("--motion: {}", motion.error().message));
   if (!motion) return motion.failure();
   if (motion->mean_residual_deg) {
     outcome.json["retargeting_deg"] = {{"mean", *motion->mean_residual_deg},

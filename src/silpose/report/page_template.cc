@@ -68,7 +68,7 @@ td.number { text-align: right; font-variant-numeric: tabular-nums; width: 6em; }
 <nav id="parts" aria-label="Part of the body"></nav>
 <div class="curves" id="curves"></div>
 <p class="key"><i style="background:var(--curve);height:2px;vertical-align:middle"></i>estimate
-<i style="background:var(--band)"></i>&plusmn; one standard deviation of the particles
+<i style="background:var(--band)"></i>&plusmn; one standard deviation
 <i style="border-top:2px dashed var(--limit);height:0;vertical-align:middle"></i>limit of the joint
 <i style="background:var(--coast)"></i>no usable silhouette: predicted only</p>
 
@@ -220,6 +220,9 @@ if (!video.getAttribute("src")) video.hidden = true;
 
 // The head of the page.
 const accuracy = known(data.accuracy);
+// Of one hypothesis, and of a smoothed clip, the size is 1 throughout and tells nothing.
+const largestSize = Math.max(1, ...known(data.n_eff)), manyStates = largestSize > 1;
+const sizePlaces = largestSize < 100 ? 1 : 0;
 const counts = {tracked: 0, coasted: 0, waiting: 0, initialised: 0};
 data.state.forEach(state => ++counts[state]);
 const tracked = counts.tracked + counts.initialised;
@@ -232,7 +235,7 @@ const agreement = accuracy.length ? digits(mean(accuracy), 3) + " \u00b1 " + dig
 for (const [value, label] of [[count, "frames"], [tracked, "tracked"],
     [counts.coasted, "coasted (no usable silhouette)"], [counts.waiting, "waiting for a person"],
     [agreement, "visual accuracy (IoU)"],
-    [digits(mean(known(data.n_eff)), 0), "effective particles, mean"]]) {
+    ...(manyStates ? [[digits(mean(known(data.n_eff)), sizePlaces), "effective sample size, mean"]] : [])]) {
   const tile = element("div", tiles, undefined, "tile");
   element("b", tile, value); element("span", tile, label);
 }
@@ -242,8 +245,10 @@ warnings.hidden = !data.warnings.length;
 
 const quality = document.getElementById("quality");
 addChart(quality, {title: "Visual accuracy", values: data.accuracy, range: [0, 1], places: 3});
-addChart(quality, {title: "Effective sample size", values: data.n_eff, places: 0,
-                   range: [0, Math.max(1, ...known(data.n_eff)) * 1.05]});
+if (manyStates) {
+  addChart(quality, {title: "Effective sample size", values: data.n_eff, places: sizePlaces,
+                     range: [0, largestSize * 1.05]});
+}
 const rotational = data.dofs.filter(dof => dof.unit !== "m");
 addChart(quality, {title: "Mean spread of the angles", unit: "\u00b0", places: 2, least: 1,
   values: data.frame.map((_, i) => {
