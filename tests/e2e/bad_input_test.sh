@@ -14,7 +14,19 @@ uncalibrated=("${plain[@]}" truth/masks --segmenter masks)
 # Wrong usage.
 expect_failure 2 'nonsense' nonsense
 expect_failure 2 'subcommand' --seed 1
-expect_failure 2 'hypotheses' "${masks[@]}" --hypotheses 3
+fitted=(track --out result truth/masks --segmenter masks)
+expect_failure 2 'hypotheses.*particles' "${masks[@]}" --hypotheses 3
+expect_failure 2 'hypotheses.*thesis' "${fitted[@]}" --preset thesis --hypotheses 3
+expect_failure 2 'hypotheses' "${fitted[@]}" --hypotheses 0
+expect_failure 2 'smooth.*layers' "${fitted[@]}" --smooth --layers 2
+expect_failure 2 'smooth.*thesis' "${fitted[@]}" --smooth --preset thesis
+expect_failure 2 'smooth.*camera:0 is live' track camera:0 --out result --smooth
+expect_failure 2 'smooth.*camera:0 is live' track camera:0 --out result --preset accurate
+expect_failure 2 'vertices' "${fitted[@]}" --vertices 7
+for option in '--motion diffusion' '--sigma-deg 3' '--resampling comb' '--resample-below 0.5' '--regenerate 0.1' \
+              '--sharpness 50' '--metric pixel-count' '--root fixed' '--estimate mode'; do
+  expect_failure 2 "${option%% *}.*particles" "${fitted[@]}" $option
+done
 expect_failure 2 'out' track truth/masks
 expect_failure 2 'VIDEO' track --out result
 expect_failure 2 'particles' "${masks[@]}" --particles 0
@@ -73,6 +85,8 @@ expect_failure 1 'nobody' "${masks[@]}" --camera-name nobody
 expect_failure 1 'other/masks/000000.png' "${track[@]}" colour/video.mp4 --background other/masks/000000.png
 expect_failure 1 'absent.png' "${track[@]}" colour/video.mp4 --background absent.png
 expect_failure 1 'other/masks' "${track[@]}" colour/video.mp4 --masks other/masks
+mkdir twice && cp truth/masks/000001.png twice && cp truth/masks/000001.png twice/1.png
+expect_failure 1 'twice.*same number' "${track[@]}" twice --segmenter masks
 mkdir few && cp truth/masks/000000.png truth/masks/000001.png few
 expect_failure 1 'few' "${track[@]}" colour/video.mp4 --masks few
 expect_failure 1 'other/masks/000000.png' "${masks[@]}" --garbage-mask other/masks/000000.png
@@ -100,6 +114,8 @@ expect_failure 1 'truth.*--start' evaluate --result result --truth truth --start
 mkdir joints && sed 's/,right_foot,/,right_wheel,/' truth/joints.csv >joints/joints.csv
 expect_failure 1 'joints/joints.csv.*right_wheel' evaluate --result joints --truth truth
 mkdir odd && cp truth/poses.csv odd && echo '{"model": 5}' >odd/run.json
+mkdir centaur && cp truth/poses.csv centaur && echo '{"model": "centaur"}' >centaur/run.json
+expect_failure 1 'centaur' evaluate --result centaur --truth truth
 "$silpose" evaluate --result odd --truth truth --quiet >log.txt || fail "a run.json without a model stops evaluate"
 
 # Motions and bodies.
@@ -108,11 +124,11 @@ expect_failure 1 'broken.bvh' synth --out new --motion broken.bvh
 printf 'HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 1 Xrotation\n}\nMOTION\nFrames: 1\nFrame Time: 1e300\n0\n' >slow.bvh
 expect_failure 1 'slow.bvh.*1e300' synth --out new --motion slow.bvh
 expect_failure 1 'absent.bvh' synth --out new --motion absent.bvh
-expect_failure '1|2' 'dancing' synth --out new --motion dancing
-expect_failure '1|2' 'dof:37' synth --out new --motion dof:37
-expect_failure '1|2' 'centaur' "${masks[@]}" --model centaur
-expect_failure '1|2' 'wings' "${masks[@]}" --model human:wings=2
-expect_failure '1|2' 'height' "${masks[@]}" --model human:height=4
+expect_failure 2 'dancing' synth --out new --motion dancing
+expect_failure 2 'dof:37' synth --out new --motion dof:37
+expect_failure 2 'centaur' "${masks[@]}" --model centaur
+expect_failure 2 'wings' "${masks[@]}" --model human:wings=2
+expect_failure 2 'height' "${masks[@]}" --model human:height=4
 expect_failure 1 'absent.body' "${masks[@]}" --model absent.body
 expect_failure 1 'text.body' "${masks[@]}" --model text.body
 export SILPOSE_DATA=$PWD/no-data

@@ -52,6 +52,13 @@ cmp -s one/poses.csv two/poses.csv && fail "the seed does nothing"
   --particles 60 --layers 3 --out seen --quiet --json >seen.json
 [[ $(number seen.json frames) == 10 ]] || fail "the lead-in is tracked"
 grep -q '^10,' seen/poses.csv || fail "frame numbers do not count from the video's first image"
+
+# Masks keep the numbers of their names, beside the video and by themselves.
+for input in 'colour/video.mp4 --masks masks/masks' 'masks/masks --segmenter masks'; do
+  "$silpose" segment $input --out given --quiet --json >given.json || fail "segment $input: exit $?"
+  [[ $(number given.json frames) == 10 ]] || fail "segment $input: not ten frames"
+  cmp -s masks/masks/000010.png given/masks/000010.png || fail "segment $input: the masks have other numbers"
+done
 "$silpose" evaluate --result seen --truth colour --json --quiet >seen_errors.json
 expect_at_least "$(number seen_errors.json mask_iou mean)" 0.65 "segmented masks"
 

@@ -1,0 +1,62 @@
+# The fitted trackers: presets accurate and default, what was used is written down and leads to the same files; Ctrl-C
+# while a clip is smoothed.
+source "$(dirname "$0")/checks.sh"
+
+"$silpose" synth --out truth --motion sway --amplitude-deg 15 --frames 6 --size 320x240 --seed 3 --quiet
+track=(track truth/masks --segmenter masks --camera truth/camera.toml --quiet --json)
+
+"$silpose" "${track[@]}" --preset accurate --threads 1 --out accurate >accurate.json || fail "accurate: exit $?"
+for file in poses.csv poses_normalised.csv spread.csv joints.csv camera.toml overlay.mp4 report.html config.toml run.json \
+            motion.bvh masks/000000.png masks/000005.png; do
+  [[ -s accurate/$file ]] || fail "accurate: no $file"
+done
+[[ $(number accurate.json frames) == 6 && $(number accurate.json frames_tracked) == 6 ]] || fail "not every frame was tracked"
+expect_at_least "$(number accurate.json stages_s smooth)" 0.001 "seconds of smoothing"
+for stage in decode segment propagate likelihood resample write; do
+  number accurate.json stages_s "$stage" >stage.txt || fail "no $stage"
+done
+expect_at_least "$(number accurate.json visual_accuracy mean)" 0.97 "visual accuracy, accurate"
+"$silpose" evaluate --result accurate --truth truth --json --quiet >errors.json
+expect_at_most "$(number errors.json joint_error_root_mm mean)" 60 "joint error, accurate, root aligned, mm"
+for line in "preset = 'accurate'" 'smooth = true' 'hypotheses = [0-9]*' 'vertices = 0'; do
+  grep -q -x "$line" accurate/config.toml || fail "config.toml does not say $line"
+done
+! grep -q -E '^(particles|layers|metric|resample-below|sharpness)' accurate/config.toml ||
+  fail "options of other trackers in config.toml"
+"$silpose" track --config accurate/config.toml --threads 2 --out again --quiet || fail "--config: exit $?"
+for file in poses.csv spread.csv joints.csv motion.bvh config.toml; do
+  cmp -s accurate/$file again/$file || fail "$file differs when the options come from config.toml"
+done
+
+"$silpose" "${track[@]}" --hypotheses 2 --out two >two.json || fail "two hypotheses: exit $?"
+expect_at_least "$(number two.json visual_accuracy mean)" 0.9 "visual accuracy, two hypotheses"
+grep -q -x 'hypotheses = 2' two/config.toml || fail "config.toml does not say two hypotheses"
+awk -F, 'NR > 1 && ($NF < 1 || $NF > 2.0001) { exit 1 }' two/poses.csv || fail "effective sample size is not within 1 and 2"
+"$silpose" "${track[@]}" --preset accurate --no-smooth --hypotheses 1 --vertices 1500 --end 0.04 --out one >one.json ||
+  fail "--no-smooth: exit $?"
+grep -q -x 'smooth = false' one/config.toml || fail "config.toml does not say that nothing was smoothed"
+"$silpose" "${track[@]}" --particles 200 --layers 1 --end 0.1 --out plain >plain.json || fail "plain filter: exit $?"
+grep -q -x 'layers = 1' plain/config.toml || fail "config.toml does not say one layer"
+"$silpose" track --config plain/config.toml --out again --quiet || fail "--config of a plain filter: exit $?"
+cmp -s plain/poses.csv again/poses.csv || fail "plain filter: other poses when the options come from config.toml"
+
+# Stopped while it smooths: the masks are whole and can be tracked later.
+"$silpose" synth --out long --motion sway --frames 60 --size 160x120 --quiet
+cp -r accurate stopped
+status=0
+"$silpose" track long/masks --segmenter masks --camera long/camera.toml --preset accurate --out stopped --quiet --json \
+  >out.json 2>err.txt &
+process=$!
+for ((wait = 0; wait < 300; ++wait)); do
+  [[ -e stopped.partial/masks/000059.png ]] && break
+  sleep 0.05
+done
+sleep 0.2
+kill -INT $process
+wait $process || status=$?
+[[ $status == 130 ]] || fail "exit $status, not 130: $(cat err.txt)"
+grep -q 'interrupted.*stopped.partial' err.txt || fail "does not say where the masks are: $(cat err.txt)"
+[[ -s stopped.partial/camera.toml && -s stopped.partial/run.json && ! -e stopped.partial/poses.csv ]] || fail "$(ls stopped.partial)"
+cmp -s long/masks/000059.png stopped.partial/masks/000059.png || fail "the partial masks are not whole"
+cmp -s accurate/poses.csv stopped/poses.csv || fail "the earlier result was touched"
+finish
