@@ -42,7 +42,8 @@ CLI::Validator is_model() {
   return CLI::Validator(
       [](const std::string& model) -> std::string {
         if (fs::path(model).extension() == ".body") return "";
-        if (!is_human(model)) return fmt::format("{}: unknown model (human, human:key=value,... or a .body file)", model);
+        if (!is_human(model))
+          return fmt::format("{}: unknown model (human, human:key=value,... or a .body file)", model);
         try {
           const Result<Phenotype> phenotype = parse_phenotype(without_dof(model));
           return phenotype ? "" : phenotype.error().message;

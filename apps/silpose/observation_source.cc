@@ -8,8 +8,8 @@
 
 #include "apps/silpose/command.h"
 #include "silpose/base/clock.h"
-#include "silpose/track/observe.h"
 #include "silpose/image/image_file.h"
+#include "silpose/track/observe.h"
 
 namespace silpose::app {
 namespace {
@@ -77,14 +77,14 @@ void add_input_options(CLI::App& command, InputOptions& options) {
   command.add_option("--grow", options.grow_px, "Grows the mask by so many pixels; negative shrinks")
       ->capture_default_str()
       ->check(CLI::Range(-64, 64));
-  command.add_option("--min-blob", options.min_blob_px, "Pixels below which a blob does not count (0.05 % of the picture)")
+  command
+      .add_option("--min-blob", options.min_blob_px, "Pixels below which a blob does not count (0.05 % of the picture)")
       ->check(CLI::Range(0, 100'000'000));
   command
       .add_option("--fps", options.default_fps, "Frames a second of input that carries no rate (30, with a warning)")
       ->check(within(0.1, 10000));
   command.add_option("--start", options.start_s, "Seconds (time_s of the results) to begin at")->check(within(0, 1e6));
-  command.add_option("--end", options.end_s, "Seconds to end at, included")
-      ->check(within(0, 1e6));
+  command.add_option("--end", options.end_s, "Seconds to end at, included")->check(within(0, 1e6));
 }
 
 Result<ObservationSource> ObservationSource::open(const InputOptions& options, Console& console) {
@@ -148,8 +148,8 @@ Result<std::optional<Instant>> ObservationSource::next() {
       // A background learned online has to see what goes before the first frame that is wanted.
       if (!wanted && !segmenters_[camera]->name().starts_with("background online")) continue;
       const Stopwatch segmenting;
-      Result<Segmentation> segmentation = segmenters_[camera]->segment(
-          (*frame)->images[camera], video_->own_index(static_cast<int>(camera)));
+      Result<Segmentation> segmentation =
+          segmenters_[camera]->segment((*frame)->images[camera], video_->own_index(static_cast<int>(camera)));
       segment_s += segmenting.seconds();
       if (!segmentation) return segmentation.failure();
       instant.observations.push_back(observation_from(std::move(*segmentation)));

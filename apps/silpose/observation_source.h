@@ -22,7 +22,7 @@ struct InputOptions {
   std::string segmenter = "auto";
   std::vector<std::string> masks, backgrounds, regions, garbage_masks;  // one for all, or one a camera
   int grow_px = 0;
-  std::optional<int> min_blob_px;  // absent: the segmenter's own
+  std::optional<int> min_blob_px;     // absent: the segmenter's own
   std::optional<double> default_fps;  // 30 and a warning where it is needed and not given
   [[nodiscard]] VideoOptions video_options() const { return {.default_fps = default_fps.value_or(30)}; }
   std::optional<double> start_s, end_s;

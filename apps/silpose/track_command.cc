@@ -32,7 +32,8 @@ Result<Outcome> run_track(const CLI::App& app, const TrackOptions& options, cons
   if (!directory) return directory.failure();
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
   if (!body) return body.failure();
-  const auto pose = read_initial_pose(options, (*body)->skeleton, 0);  // what is wrong with it is told before the clip is read
+  const auto pose =
+      read_initial_pose(options, (*body)->skeleton, 0);  // what is wrong with it is told before the clip is read
   if (!pose) return pose.failure();
   const Result<CameraChoice> cameras = choose_cameras_of(options);
   if (!cameras) return cameras.failure();

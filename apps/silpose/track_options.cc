@@ -19,8 +19,9 @@ void add_fitted_options(CLI::App& app, TrackerOptions& tracker) {
   app.add_option("--hypotheses", tracker.num_hypotheses, "Poses that are kept possible at a time (4; accurate: 8)")
       ->check(CLI::Range(1, 64))
       ->group(kFitted);
-  app.add_flag_function("--smooth,!--no-smooth", [&tracker](int64_t count) { tracker.smooth = count > 0; },
-                        "Of a recorded clip: track both ways, then fit all frames at once (accurate: on)")
+  app.add_flag_function(
+         "--smooth,!--no-smooth", [&tracker](int64_t count) { tracker.smooth = count > 0; },
+         "Of a recorded clip: track both ways, then fit all frames at once (accurate: on)")
       ->group(kFitted);
 }
 
@@ -50,15 +51,12 @@ void add_sampling_options(CLI::App& app, TrackOptions& options) {
 // The first option given that only the sampling filters have.
 std::optional<std::string> sampling_option(const TrackOptions& options) {
   const TrackerOptions& tracker = options.tracker;
-  const std::pair<const char*, bool> given[] = {{"--motion", tracker.motion.has_value()},
-                                                {"--sigma-deg", tracker.sigma_deg.has_value()},
-                                                {"--resampling", tracker.resampling.has_value()},
-                                                {"--resample-below", options.resample_below.has_value()},
-                                                {"--regenerate", tracker.regenerate.has_value()},
-                                                {"--sharpness", tracker.sharpness.has_value()},
-                                                {"--metric", options.metric.has_value()},
-                                                {"--root fixed", options.root == "fixed"},
-                                                {"--estimate", options.estimate.has_value()}};
+  const std::pair<const char*, bool> given[] = {
+      {"--motion", tracker.motion.has_value()},         {"--sigma-deg", tracker.sigma_deg.has_value()},
+      {"--resampling", tracker.resampling.has_value()}, {"--resample-below", options.resample_below.has_value()},
+      {"--regenerate", tracker.regenerate.has_value()}, {"--sharpness", tracker.sharpness.has_value()},
+      {"--metric", options.metric.has_value()},         {"--root fixed", options.root == "fixed"},
+      {"--estimate", options.estimate.has_value()}};
   for (const auto& [name, is_given] : given) {
     if (is_given) return name;
   }
@@ -72,9 +70,10 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
   app.add_option("--out", options.out, "Directory for the result");
   add_model_option(app, options.model);
   add_camera_options(app, options.camera);
-  app.add_option("--preset", options.tracker.preset,
-                 "default: hypotheses fitted online; accurate: more of them, the whole mesh, smoothed; thesis: two plain "
-                 "particle filters, root and pose")
+  app.add_option(
+         "--preset", options.tracker.preset,
+         "default: hypotheses fitted online; accurate: more of them, the whole mesh, smoothed; thesis: two plain "
+         "particle filters, root and pose")
       ->capture_default_str()
       ->check(CLI::IsMember({"default", "accurate", "thesis"}));
   app.add_option("--vertices", options.tracker.lod_vertices,

@@ -161,9 +161,9 @@ class TrackRun {
 }  // namespace
 
 std::vector<std::pair<std::string, double>> StageSeconds::list() const {
-  return {{"background", background}, {"decode", decode},         {"segment", segment},
-          {"start", start},           {"propagate", propagate},   {"likelihood", likelihood},
-          {"resample", resample},     {"smooth", smooth},         {"write", write}};
+  return {{"background", background}, {"decode", decode},       {"segment", segment},
+          {"start", start},           {"propagate", propagate}, {"likelihood", likelihood},
+          {"resample", resample},     {"smooth", smooth},       {"write", write}};
 }
 
 Result<Tracked> track_video(const TrackOptions& options, TrackerOptions tracker, ObservationSource& source,

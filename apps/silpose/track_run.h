@@ -1,7 +1,6 @@
-// The work of `silpose track`: observations in, poses out, masks and overlay written on the way. Frame by frame, or with
-// smoothing in three passes: the clip is segmented, then tracked as a whole, then read again for the overlay. Pictures
-// are never kept.
-// Threads: the main thread only.
+// The work of `silpose track`: observations in, poses out, masks and overlay written on the way. Frame by frame, or
+// with smoothing in three passes: the clip is segmented, then tracked as a whole, then read again for the overlay.
+// Pictures are never kept. Threads: the main thread only.
 #pragma once
 
 #include <string>
@@ -31,7 +30,7 @@ struct Tracked {
   TrackerOptions used;       // everything filled in
   int64_t num_frames = 0;    // segmented
   StageSeconds seconds;
-  double loop_s = 0;         // from the first frame to the last, all stages
+  double loop_s = 0;  // from the first frame to the last, all stages
   bool interrupted = false;
 };
 

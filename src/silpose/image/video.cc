@@ -23,7 +23,7 @@ struct Video::Impl {
   bool fps_assumed = false, live = false, ended = false, truncated = false;
   int64_t hint = 0, num_read = 0;
   std::vector<int64_t> numbers;  // of the frames; empty: counted from 0
-  Stopwatch since_start;  // the time of live pictures
+  Stopwatch since_start;         // the time of live pictures
 
   static Result<Camera> open_camera(const std::string& input) {
     auto source = open_frame_source(input);

@@ -32,8 +32,8 @@ class Video {
   [[nodiscard]] int width(int camera = 0) const;
   [[nodiscard]] int height(int camera = 0) const;
   [[nodiscard]] double fps() const;
-  [[nodiscard]] bool fps_assumed() const;       // the input carries no rate
-  [[nodiscard]] bool is_live() const;           // a camera: cannot rewind
+  [[nodiscard]] bool fps_assumed() const;  // the input carries no rate
+  [[nodiscard]] bool is_live() const;      // a camera: cannot rewind
   // Frames as the container tells (0: unknown); the truth is known at the end.
   [[nodiscard]] int64_t num_frames_hint() const;
   // Of the first frame: 0, or the number of the first of numbered pictures.

@@ -63,7 +63,8 @@ class GivenMasks : public Segmenter {
 
 }  // namespace
 
-std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, int64_t offset, const CleanUpOptions& clean_up) {
+std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, int64_t offset,
+                                            const CleanUpOptions& clean_up) {
   return std::make_unique<GivenMasks>(std::move(masks), offset, clean_up);
 }
 

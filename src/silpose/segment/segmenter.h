@@ -45,10 +45,10 @@ class Segmenter {
 struct SegmenterOptions {
   std::string kind = "auto";        // auto, background, masks
   std::string background = "auto";  // auto, online, online:knn, lead-in:SECONDS, a video, a picture
-  // A directory, a pattern, a video; empty with kind masks: the input itself. As many as frames belong to them in order,
-  // otherwise mask number i to frame number i.
+  // A directory, a pattern, a video; empty with kind masks: the input itself. As many as frames belong to them in
+  // order, otherwise mask number i to frame number i.
   std::string masks;
-  double default_fps = 30;          // of input that carries no rate
+  double default_fps = 30;  // of input that carries no rate
   CleanUpOptions clean_up;  // given masks stay as they are unless a region, a garbage mask or growth is asked for
 };
 
