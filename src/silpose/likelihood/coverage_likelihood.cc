@@ -14,6 +14,9 @@
 namespace silpose {
 namespace {
 
+// Numbers that a fit takes from an outline: what they explain is not left in the residual.
+constexpr double kFittedNumbers = 15;
+
 // What turns sum_cells D (K * D) into squared pixels along the outline.
 double outline_scale(int cell) {
   return 2 * std::sqrt(std::numbers::pi) * cell * static_cast<double>(cell) * static_cast<double>(cell);
@@ -187,6 +190,24 @@ double CoverageLikelihood::energy(const CoverageEvidence& evidence, Blur blur, s
     if (residual[c] > 0) sum += evidence.views[c].trust / evidence.noise[c] * residual[c];
   }
   return sum;
+}
+
+std::vector<double> CoverageLikelihood::estimate_noise(const CoverageEvidence& evidence, std::span<const double> pose,
+                                                       Scratch& scratch) const {
+  std::vector<double> noise = residuals(evidence, Blur::k8, pose, scratch);
+  for (size_t c = 0; c < noise.size(); ++c) {
+    const CoverageEvidence::View& view = evidence.views[c];
+    if (view.trust <= 0 || view.outline_length <= 0) {
+      noise[c] = 0;
+      continue;
+    }
+    const double along = 2 * std::sqrt(std::numbers::pi) * view.rasters[static_cast<size_t>(Blur::k8)].cell;
+    const double segments = view.outline_length / along;
+    const double left = std::max(segments - kFittedNumbers, 0.25 * segments) / segments;
+    noise[c] *= along / (view.outline_length * left) / std::pow(view.pixel_unit, 3);
+    noise[c] = std::max(noise[c], kLeastNoise);
+  }
+  return noise;
 }
 
 NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, Blur blur,

@@ -68,6 +68,8 @@ class CoverageLikelihood {
 
   // What exact masks deserve, in units of pixel_unit^3: the default of CoverageEvidence::noise.
   static constexpr double kExactNoise = 10;
+  // Outlines are never trusted further than this, however well a body may fit: its skin has its own errors.
+  static constexpr double kLeastNoise = 1;
 
   // Shapes: one observation a camera. A camera whose observation found nothing gets no say. Only blurs from
   // `narrowest` to `widest` are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit its camera.
@@ -96,6 +98,12 @@ class CoverageLikelihood {
   // E of each view by itself with noise 1 and trust 1 (px^3): what noise is estimated from. [C]
   std::vector<double> residuals(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,
                                 Scratch& scratch) const;
+
+  // How noisy the outlines prove to be, seen from a pose that fits: variance times correlation length, in units of
+  // pixel_unit^3, never below kLeastNoise. White noise of variance s^2 and correlation length l leaves
+  // s^2 l L / (2 sqrt(pi) sigma) after a blur wider than l, of which a fit explains some. A camera without a say: 0. [C]
+  std::vector<double> estimate_noise(const CoverageEvidence& evidence, std::span<const double> pose,
+                                     Scratch& scratch) const;
 
   [[nodiscard]] const BodyModel& body() const;
   [[nodiscard]] std::span<const PinholeCamera> cameras() const;

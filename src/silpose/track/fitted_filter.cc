@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "silpose/base/clock.h"
 #include "silpose/filter/log_weights.h"
@@ -11,14 +10,8 @@
 namespace silpose {
 namespace {
 
-// Outlines are never trusted further than this, however well a body may fit: its skin has its own errors.
-constexpr double kLeastNoise = 1;
-constexpr double kFirstNoise = 4;
 // How many frames the estimate of the noise looks back.
 constexpr double kNoiseMemory = 10;
-// Numbers that a fit takes from an outline: what they explain is not left in the residual.
-constexpr double kFittedNumbers = 15;
-
 MixtureOptions mixture_options(const TrackerOptions& options) {
   return {.num_hypotheses = *options.num_hypotheses, .seed = options.seed};
 }
@@ -39,7 +32,7 @@ FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const 
 
 void FittedFilter::start(std::span<const StartingPose> starts) {
   mixture_.start(poses_of(starts));
-  noise_.assign(fine_->cameras().size(), kFirstNoise);
+  noise_.clear();
   report();
 }
 
@@ -50,9 +43,10 @@ void FittedFilter::add(std::span<const StartingPose> starts) {
 FilterReport FittedFilter::step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) {
   const Stopwatch stopwatch;
   CoverageEvidence evidence = fine_->prepare(observations, Blur::k8);
+  if (noise_.empty()) update_noise(evidence);
   for (size_t c = 0; c < noise_.size(); ++c) evidence.noise[c] = noise_[c] * std::pow(evidence.views[c].pixel_unit, 3);
   mixture_.step(evidence, dt_s);
-  estimate_noise(evidence);
+  update_noise(evidence);
   seconds.likelihood += stopwatch.seconds();
   return report();
 }
@@ -62,22 +56,23 @@ FilterReport FittedFilter::coast(double dt_s) {
   return report();
 }
 
-// White noise along the outline, of variance s^2 and correlation length l, leaves s^2 l L / (2 sqrt(pi) sigma) after a
-// blur wider than l, of which the fit explains some.
-void FittedFilter::estimate_noise(const CoverageEvidence& evidence) {
-  const GaussianComponent& best = mixture_.hypotheses().front();
-  const std::vector<double> pose(best.pose().begin(), best.pose().end());
+void FittedFilter::update_noise(const CoverageEvidence& evidence) {
   CoverageLikelihood::Scratch scratch(*fine_);
-  const std::vector<double> residual = fine_->residuals(evidence, Blur::k8, pose, scratch);
+  const auto pose_of = [](const GaussianComponent& hypothesis) {
+    return std::vector<double>(hypothesis.pose().begin(), hypothesis.pose().end());
+  };
+  if (noise_.empty()) {  // at the start the best of what there is says how good a fit can be
+    for (const GaussianComponent& hypothesis : mixture_.hypotheses()) {
+      const std::vector<double> found = fine_->estimate_noise(evidence, pose_of(hypothesis), scratch);
+      if (noise_.empty()) noise_ = found;
+      for (size_t c = 0; c < found.size(); ++c) noise_[c] = std::min(noise_[c], found[c]);
+    }
+    for (double& noise : noise_) noise = noise > 0 ? noise : CoverageLikelihood::kExactNoise;
+    return;
+  }
+  const std::vector<double> found = fine_->estimate_noise(evidence, pose_of(mixture_.hypotheses().front()), scratch);
   for (size_t c = 0; c < noise_.size(); ++c) {
-    const CoverageEvidence::View& view = evidence.views[c];
-    if (view.trust <= 0 || view.outline_length <= 0) continue;
-    const double along = 2 * std::sqrt(std::numbers::pi) * view.rasters[static_cast<size_t>(Blur::k8)].cell;
-    const double segments = view.outline_length / along;
-    const double left = std::max(segments - kFittedNumbers, 0.25 * segments) / segments;
-    const double found = residual[c] * along / (view.outline_length * left) / std::pow(view.pixel_unit, 3);
-    const double log_noise = std::log(noise_[c]) + (std::log(std::max(found, kLeastNoise)) - std::log(noise_[c])) / kNoiseMemory;
-    noise_[c] = std::exp(log_noise);
+    if (found[c] > 0) noise_[c] *= std::pow(found[c] / noise_[c], 1 / kNoiseMemory);
   }
 }
 

@@ -30,13 +30,13 @@ class FittedFilter final : public PoseFilter {
   [[nodiscard]] std::vector<double> noise() const override { return noise_; }
 
  private:
-  void estimate_noise(const CoverageEvidence& evidence);
+  void update_noise(const CoverageEvidence& evidence);
   FilterReport report();
 
   std::shared_ptr<const CoverageLikelihood> fine_;
   MixtureFilter mixture_;
   ParticleSet particles_;
-  std::vector<double> noise_;  // [C]
+  std::vector<double> noise_;  // [C]; empty until the first step
 };
 
 }  // namespace silpose

@@ -23,8 +23,8 @@ struct MixtureOptions {
   int num_parents = 2;        // of new hypotheses, the best
   int num_random_limbs = 40;  // tried for each parent
   int num_fitted = 3;         // new hypotheses fitted for each parent, the most promising
-  double acceleration = 1;    // times motion/noise.h's acceleration_deviation
-  double rest_weight = 0.03;  // pose_fit.h
+  double acceleration = 1.25;  // times motion/noise.h's acceleration_deviation
+  double rest_weight = 0.2;    // pose_fit.h
   double velocity_decay_per_s = 0;
   double jump_log_prior = -6;   // log-probability of a hypothesis that jumped
   double novelty = 0.12;         // metres: new hypotheses have a joint at least as far from their parent

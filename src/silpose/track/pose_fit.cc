@@ -114,7 +114,7 @@ PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& e
   }
   fit.pose = std::move(at.pose);
   fit.energy = at.energy;
-  fit.prior_cost = at.prior_cost;
+  fit.prior_cost = at.prior_cost + at.other_cost;
   fit.hessian = std::move(at.silhouette);
   fit.information = std::move(at.hessian);
   return fit;

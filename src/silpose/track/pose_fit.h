@@ -31,7 +31,7 @@ inline constexpr FitStage kStartStages[] = {{Blur::k32, 4}, {Blur::k16, 5}, {Blu
 struct PoseFit {
   Eigen::VectorXd pose;       // [D] within the limits
   double energy = 0;          // E at the last stage's blur
-  double prior_cost = 0;      // of the prior alone
+  double prior_cost = 0;      // of the prior, the limits and the pull to rest
   Eigen::MatrixXd hessian;    // [D, D] of E/2: the information that the silhouette gives
   Eigen::MatrixXd information;  // [D, D] with the prior's, the limits' and the pull to rest
   int num_iterations = 0;

@@ -17,8 +17,8 @@ namespace silpose {
 
 struct SmootherOptions {
   std::vector<FitStage> stages = {{Blur::k8, 4}, {Blur::k4, 4}, {Blur::k2, 4}};
-  double acceleration = 1;   // times motion/noise.h's acceleration_deviation
-  double rest_weight = 0.03;  // pose_fit.h
+  double acceleration = 1.25;  // times motion/noise.h's acceleration_deviation
+  double rest_weight = 0.2;    // pose_fit.h
   std::vector<double> noise;  // [C] of the outlines, in units of pixel_unit^3; empty: that of exact masks
 };
 

@@ -72,9 +72,10 @@ class ClipTracker {
     // misses, another may have found.
     const size_t start = clearest();
     start_seconds_ = stopwatch.seconds();
+    if (stopped_) return {};
     pass(start, last_, std::nullopt);
-    pass(last_, first_, last_pose_);
-    pass(first_, last_, last_pose_);
+    if (!stopped_) pass(last_, first_, last_pose_);
+    if (!stopped_) pass(first_, last_, last_pose_);
     if (stopped_) return {};
     const SmoothedPoses smoothed =
         smooth_poses(*likelihood_, clip_.subspan(first_, last_ - first_ + 1),
@@ -115,6 +116,7 @@ class ClipTracker {
     double best = -std::numeric_limits<double>::infinity();
     size_t chosen = starts.front();
     for (const size_t t : starts) {
+      if (!proceed()) break;
       Rng rng(options_.seed, t);
       const auto found = initialise(*likelihood_, clip_[t].observations,
                                     proposal.propose(clip_[t].observations.front(), 0, rng));
