@@ -163,7 +163,7 @@ class ClipTracker {
         Possible& possible = possible_[first_ + i];
         possible.energies.assign(possible.poses.size(), 0.0);
         if (!seen_[first_ + i]) continue;
-        const CoverageEvidence evidence = likelihood_->prepare(clip_[first_ + i].observations, Blur::k4, Blur::k4);
+        const CoverageEvidence evidence = evidence_at(first_ + i);
         for (size_t k = 0; k < possible.poses.size(); ++k) {
           const VectorXd& pose = possible.poses[k];
           possible.energies[k] =
@@ -209,6 +209,44 @@ class ClipTracker {
     return path;
   }
 
+  CoverageEvidence evidence_at(size_t t) const {
+    CoverageEvidence evidence = likelihood_->prepare(clip_[t].observations, Blur::k4, Blur::k4);
+    for (size_t c = 0; c < noise_.size(); ++c) {
+      evidence.noise[c] = noise_[c] * std::pow(evidence.views[c].pixel_unit, 3);
+    }
+    return evidence;
+  }
+
+  // What the passes held possible besides the smoothed pose, weighed by how well it fits: where they disagree and the
+  // silhouette cannot tell, the spread says so. Adds variances [D] and of landmarks [J + E].
+  void add_disagreement(size_t t, const StepReport& report, CoverageLikelihood::Scratch& scratch,
+                        std::vector<double>& variance, std::vector<Eigen::Vector3d>& landmark_variance) const {
+    if (!seen_[t]) return;
+    const BodyModel& body = *options_.body;
+    const Possible& possible = possible_[t];
+    const double own = likelihood_->energy(evidence_at(t), Blur::k4, report.pose, scratch);
+    const double best = std::min(own, *std::ranges::min_element(possible.energies));
+    double sum = std::exp(-0.5 * (own - best));
+    std::vector<double> weights;
+    for (const double energy : possible.energies) {
+      weights.push_back(std::exp(-0.5 * (energy - best)) / kNumPasses);
+      sum += weights.back();
+    }
+    const auto landmarks = landmark_positions(body, report.pose);
+    for (size_t k = 0; k < weights.size(); ++k) {
+      const double weight = weights[k] / sum;
+      if (weight < 1e-6) continue;
+      const VectorXd& pose = possible.poses[k];
+      for (size_t d = 0; d < variance.size(); ++d) {
+        double off = pose[static_cast<Eigen::Index>(d)] - report.pose[d];
+        if (body.skeleton.dofs()[d].is_periodic) off = wrap_angle(off);
+        variance[d] += weight * off * off;
+      }
+      const auto x = landmark_positions(body, {pose.data(), static_cast<size_t>(pose.size())});
+      for (size_t l = 0; l < x.size(); ++l) landmark_variance[l] += weight * (x[l] - landmarks[l]).cwiseAbs2();
+    }
+  }
+
   std::vector<StepReport> waiting(size_t from, size_t to) const {
     std::vector<StepReport> reports;
     for (size_t t = from; t < to; ++t) reports.push_back(report_at(t));
@@ -228,17 +266,18 @@ class ClipTracker {
     const BodyModel& body = *options_.body;
     std::vector<StepReport> reports = waiting(0, clip_.size());
     parallel_for(smoothed.poses.size(), 4, [&](size_t begin, size_t end) {
+      CoverageLikelihood::Scratch scratch(*likelihood_);
       for (size_t i = begin; i < end; ++i) {
         StepReport& report = reports[first_ + i];
         report.pose.assign(smoothed.poses[i].begin(), smoothed.poses[i].end());
         body.skeleton.clamp(report.pose);
         report.mode = report.pose;
-        for (Eigen::Index d = 0; d < smoothed.poses[i].size(); ++d) {
-          report.spread.push_back(std::sqrt(std::max(smoothed.covariances[i](d, d), 0.0)));
-        }
-        for (const Eigen::Vector3d& variance : landmark_variances(body, report.pose, smoothed.covariances[i])) {
-          report.landmark_spread.emplace_back(variance.cwiseMax(0).cwiseSqrt());
-        }
+        const VectorXd of_fit = smoothed.covariances[i].diagonal();
+        std::vector<double> variance(of_fit.begin(), of_fit.end());
+        std::vector<Eigen::Vector3d> of_landmarks = landmark_variances(body, report.pose, smoothed.covariances[i]);
+        add_disagreement(first_ + i, report, scratch, variance, of_landmarks);
+        for (const double v : variance) report.spread.push_back(std::sqrt(std::max(v, 0.0)));
+        for (const Eigen::Vector3d& v : of_landmarks) report.landmark_spread.emplace_back(v.cwiseMax(0).cwiseSqrt());
         report.effective_sample_size = 1;
         report.state = i == 0                ? StepReport::State::kInitialised
                        : seen_[first_ + i]   ? StepReport::State::kTracked
@@ -256,6 +295,7 @@ class ClipTracker {
     return reports;
   }
 
+  static constexpr double kNumPasses = 3;
   static constexpr double kPassShare = 0.35;      // of the whole work, one pass over the whole clip
   static constexpr double kTransitionScale = 4;   // times acceleration_deviation: hypotheses are fits, not truths
   static constexpr double kTransitionCap = 30;    // of one DOF
