@@ -28,6 +28,7 @@ struct Dof {
   bool is_periodic = false;      // a full turn: limits are for NPSU only, values wrap
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  // positive values turn by the right hand about it
   double lower = 0, upper = 0;   // radians or metres
+  bool is_shape = false;         // a property of the body, the same in every pose of a clip (stretchable.h)
 
   [[nodiscard]] std::string column() const { return name + (is_translation ? "_m" : "_deg"); }
 };

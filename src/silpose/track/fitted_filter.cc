@@ -28,7 +28,9 @@ std::vector<Eigen::VectorXd> poses_of(std::span<const StartingPose> starts) {
 
 FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
                            std::shared_ptr<const CoverageLikelihood> coarse)
-    : fine_(fine), mixture_(std::move(fine), std::move(coarse), mixture_options(options)) {}
+    : fine_(fine),
+      mixture_(std::move(fine), coarse, mixture_options(options)),
+      body_error_(coarse->body(), options.cameras) {}
 
 void FittedFilter::start(std::span<const StartingPose> starts) {
   mixture_.start(poses_of(starts));
@@ -47,8 +49,11 @@ FilterReport FittedFilter::step(std::span<const Observation> observations, doubl
   for (size_t c = 0; c < noise_.size(); ++c) evidence.noise[c] = noise_[c] * std::pow(evidence.views[c].pixel_unit, 3);
   mixture_.step(evidence, dt_s);
   update_noise(evidence);
+  const FilterReport stepped = report();
+  CoverageLikelihood::Scratch scratch(body_error_.likelihood());
+  from_body_ = body_error_.variance(evidence, estimate(), scratch);
   seconds.likelihood += stopwatch.seconds();
-  return report();
+  return stepped;
 }
 
 FilterReport FittedFilter::coast(double dt_s) {
@@ -122,6 +127,8 @@ PoseSpread FittedFilter::spread() const {
       spread.landmarks[l] += weights[i] * (variances[l] + (landmarks[l] - centre_landmarks[l]).cwiseAbs2());
     }
   }
+  for (size_t d = 0; d < from_body_.dofs.size(); ++d) spread.dofs[d] += from_body_.dofs[d];
+  for (size_t l = 0; l < from_body_.landmarks.size(); ++l) spread.landmarks[l] += from_body_.landmarks[l];
   for (double& variance : spread.dofs) variance = std::sqrt(variance);
   for (Eigen::Vector3d& variance : spread.landmarks) variance = variance.cwiseSqrt();
   return spread;

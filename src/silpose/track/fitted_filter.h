@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "silpose/track/body_error.h"
 #include "silpose/track/mixture_filter.h"
 #include "silpose/track/pose_filter.h"
 
@@ -36,6 +37,8 @@ class FittedFilter final : public PoseFilter {
   std::shared_ptr<const CoverageLikelihood> fine_;
   MixtureFilter mixture_;
   ParticleSet particles_;
+  BodyError body_error_;
+  BodyError::Variance from_body_;  // of the last estimate
   std::vector<double> noise_;  // [C]; empty until the first step
 };
 

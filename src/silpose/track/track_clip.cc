@@ -11,6 +11,7 @@
 #include "silpose/motion/common_poses.h"
 #include "silpose/motion/noise.h"
 #include "silpose/render/silhouette.h"
+#include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/smoother.h"
@@ -265,8 +266,9 @@ class ClipTracker {
   std::vector<StepReport> reports(const SmoothedPoses& smoothed) const {
     const BodyModel& body = *options_.body;
     std::vector<StepReport> reports = waiting(0, clip_.size());
+    const BodyError body_error(level_of_detail(body, kBodyErrorVertices), options_.cameras);
     parallel_for(smoothed.poses.size(), 4, [&](size_t begin, size_t end) {
-      CoverageLikelihood::Scratch scratch(*likelihood_);
+      CoverageLikelihood::Scratch scratch(*likelihood_), of_stretched(body_error.likelihood());
       for (size_t i = begin; i < end; ++i) {
         StepReport& report = reports[first_ + i];
         report.pose.assign(smoothed.poses[i].begin(), smoothed.poses[i].end());
@@ -276,6 +278,11 @@ class ClipTracker {
         std::vector<double> variance(of_fit.begin(), of_fit.end());
         std::vector<Eigen::Vector3d> of_landmarks = landmark_variances(body, report.pose, smoothed.covariances[i]);
         add_disagreement(first_ + i, report, scratch, variance, of_landmarks);
+        if (seen_[first_ + i]) {
+          const auto from_body = body_error.variance(evidence_at(first_ + i), report.pose, of_stretched);
+          for (size_t d = 0; d < variance.size(); ++d) variance[d] += from_body.dofs[d];
+          for (size_t l = 0; l < of_landmarks.size(); ++l) of_landmarks[l] += from_body.landmarks[l];
+        }
         for (const double v : variance) report.spread.push_back(std::sqrt(std::max(v, 0.0)));
         for (const Eigen::Vector3d& v : of_landmarks) report.landmark_spread.emplace_back(v.cwiseMax(0).cwiseSqrt());
         report.effective_sample_size = 1;
@@ -296,6 +303,7 @@ class ClipTracker {
   }
 
   static constexpr double kNumPasses = 3;
+  static constexpr int kBodyErrorVertices = 800;
   static constexpr double kPassShare = 0.35;      // of the whole work, one pass over the whole clip
   static constexpr double kTransitionScale = 4;   // times acceleration_deviation: hypotheses are fits, not truths
   static constexpr double kTransitionCap = 30;    // of one DOF

@@ -1,0 +1,39 @@
+// BodyError: how far an estimate may be off because the subject is not built as the body is. Bones are allowed to be
+// longer or shorter (body/stretchable.h); a pose fitted with wrong lengths is off by how the fit answers to them, and all
+// frames are off alike, so that neither time nor a good overlap makes it smaller.
+// How wrong the body is shows in how badly its outline fits: with outlines as clean as exact masks of the right body
+// leave them nothing is added.
+// Based on: consider covariance of parameters that are not estimated (references.bib: schmidt1966).
+// Threads: constant after construction; one CoverageLikelihood::Scratch of likelihood() per thread.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "silpose/likelihood/coverage_likelihood.h"
+
+namespace silpose {
+
+class BodyError {
+ public:
+  // `body` is a level of detail; the stretchable one is made of it.
+  BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras);
+
+  [[nodiscard]] const CoverageLikelihood& likelihood() const { return *likelihood_; }
+
+  struct Variance {
+    std::vector<double> dofs;                // [D] radians^2, metres^2
+    std::vector<Eigen::Vector3d> landmarks;  // [J + E] metres^2
+  };
+  // What to add to the variance of a pose [D] that was fitted to `evidence`, prepared at Blur::k4.
+  [[nodiscard]] Variance variance(const CoverageEvidence& evidence, std::span<const double> pose,
+                                  CoverageLikelihood::Scratch& scratch) const;
+
+ private:
+  std::unique_ptr<CoverageLikelihood> likelihood_;  // of the stretchable body
+  Eigen::MatrixXd lengths_;                         // [S, S] prior covariance
+};
+
+}  // namespace silpose

@@ -1,0 +1,56 @@
+#include "silpose/track/body_error.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "silpose/body/human.h"
+#include "silpose/render/silhouette.h"
+
+namespace silpose {
+namespace {
+
+class BodyErrorTest : public ::testing::Test {
+ protected:
+  BodyError::Variance variance(double noise, const std::vector<PinholeCamera>& cameras) const {
+    const BodyError error(*body_, cameras);
+    std::vector<Observation> observations;
+    for (const PinholeCamera& camera : cameras) {
+      Observation observation;
+      observation.mask = render_silhouette(*body_, camera, pose_);
+      observation.box = observation.mask.bounding_box();
+      observations.push_back(std::move(observation));
+    }
+    CoverageEvidence evidence = error.likelihood().prepare(observations, Blur::k4, Blur::k4);
+    for (size_t c = 0; c < cameras.size(); ++c) {
+      evidence.noise[c] = noise * std::pow(evidence.views[c].pixel_unit, 3);
+    }
+    CoverageLikelihood::Scratch scratch(error.likelihood());
+    return error.variance(evidence, pose_, scratch);
+  }
+
+  std::shared_ptr<const BodyModel> body_ = std::make_shared<const BodyModel>(level_of_detail(
+      build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 800));
+  std::vector<double> pose_ = standing_pose(*body_);
+  PinholeCamera front_ = look_at_camera(640, 480, 700, {0, 1, 5}, {0, 0.9, 0});
+  PinholeCamera side_ = look_at_camera(640, 480, 700, {5, 1, 0}, {0, 0.9, 0});
+};
+
+TEST_F(BodyErrorTest, AddsNothingWhereTheBodyFits) {
+  for (const double v : variance(1, {front_}).dofs) EXPECT_EQ(v, 0);
+}
+
+TEST_F(BodyErrorTest, ASizeThatIsUnsureIsADepthThatIsUnsure) {
+  const auto one = variance(40, {front_});
+  const double depth = std::sqrt(one.dofs[2]), across = std::sqrt(one.dofs[0]);
+  EXPECT_GT(depth, 0.02);  // metres: more than half a percent of 5 m
+  EXPECT_LT(across, 0.3 * depth);
+}
+
+TEST_F(BodyErrorTest, ASecondCameraHelps) {
+  EXPECT_LT(variance(40, {front_, side_}).dofs[2], 0.25 * variance(40, {front_}).dofs[2]);
+}
+
+}  // namespace
+}  // namespace silpose
