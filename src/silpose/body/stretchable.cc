@@ -50,7 +50,8 @@ Eigen::MatrixXd stretch_covariance(const Skeleton& skeleton, const StretchOption
   const auto S = std::ssize(indices);
   Eigen::MatrixXd covariance(S, S);
   const auto length = [&](Eigen::Index i) {
-    return skeleton.joints()[static_cast<size_t>(skeleton.dofs()[static_cast<size_t>(indices[static_cast<size_t>(i)])].joint_idx)]
+    return skeleton
+        .joints()[static_cast<size_t>(skeleton.dofs()[static_cast<size_t>(indices[static_cast<size_t>(i)])].joint_idx)]
         .offset_in_parent.norm();
   };
   for (Eigen::Index i = 0; i < S; ++i) {

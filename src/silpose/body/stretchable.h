@@ -1,7 +1,6 @@
-// stretchable(): a body whose bones may be a little longer or shorter than its builder said. Each long bone gets one more
-// DOF, a length, after those of the pose: a pose of the body, followed by zeros, is a pose of the stretchable one. What
-// is not known of a subject can then be estimated, or at least allowed for.
-// Threads: functions without state.
+// stretchable(): a body whose bones may be a little longer or shorter than its builder said. Each long bone gets one
+// more DOF, a length, after those of the pose: a pose of the body, followed by zeros, is a pose of the stretchable one.
+// What is not known of a subject can then be estimated, or at least allowed for. Threads: functions without state.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,12 +10,13 @@
 namespace silpose {
 
 struct StretchOptions {
-  double shortest_bone = 0.08;      // of the body's height: shorter bones stay as they are
+  double shortest_bone = 0.08;  // of the body's height: shorter bones stay as they are
   // Deviations, relative to a bone's length: of the whole body's size, of each pair of bones, between right and left.
   double size = 0.02, bone = 0.045, side = 0.005;
 };
 
-// The lengths are called as the bone's outer joint: "right_shin_length". Metres, 0: as built; limits are three deviations.
+// The lengths are called as the bone's outer joint: "right_shin_length". Metres, 0: as built; limits are three
+// deviations.
 BodyModel stretchable(const BodyModel& body, const StretchOptions& options = {});
 
 // Prior covariance [S, S] of the lengths, in DOF order. Shapes: S shape DOF of a skeleton made by stretchable().

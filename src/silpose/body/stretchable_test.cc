@@ -40,7 +40,8 @@ TEST(Stretchable, ALengthMovesTheJointAlongItsBone) {
   pose[static_cast<size_t>(d)] = 0.02;
   const auto after = stretched.skeleton.forward_kinematics(pose);
   EXPECT_NEAR((after[shin].translation - after[thigh].translation).norm() -
-                  (before[shin].translation - before[thigh].translation).norm(), 0.02, 1e-9);
+                  (before[shin].translation - before[thigh].translation).norm(),
+              0.02, 1e-9);
 }
 
 TEST(StretchCovariance, IsPositiveAndTiesRightToLeft) {
@@ -53,7 +54,9 @@ TEST(StretchCovariance, IsPositiveAndTiesRightToLeft) {
     return std::ranges::find(indices, *skeleton.find_dof(name)) - indices.begin();
   };
   const auto r = at("right_shin_length"), l = at("left_shin_length"), a = at("right_forearm_length");
-  const auto correlation = [&](auto i, auto j) { return covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j)); };
+  const auto correlation = [&](auto i, auto j) {
+    return covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
+  };
   EXPECT_GT(correlation(r, l), 0.95);
   EXPECT_LT(correlation(r, a), 0.5);
 }

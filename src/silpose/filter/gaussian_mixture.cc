@@ -27,7 +27,8 @@ void predict_constant_velocity(GaussianComponent& component, double dt, std::spa
                                double interval, double decay_per_s) {
   const Eigen::Index D = component.num_dofs();
   check(std::ssize(acceleration) == D && dt >= 0 && interval > 0,
-        "predict_constant_velocity: {} accelerations for {} DOF, dt {}, interval {}", acceleration.size(), D, dt, interval);
+        "predict_constant_velocity: {} accelerations for {} DOF, dt {}, interval {}", acceleration.size(), D, dt,
+        interval);
   const double keep = std::exp(-decay_per_s * dt);
   const double moved = decay_per_s > 0 ? (1 - keep) / decay_per_s : dt;
   component.mean.head(D) += moved * component.mean.tail(D);

@@ -133,8 +133,8 @@ CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observ
 
 namespace {
 
-// Draws a projected body's coverage, less the observed one, into `difference`; calls on_end(end, cell x, cell y, by) for
-// every end inside the picture: moving it to the right by 1 px changes its cell's coverage by `by`.
+// Draws a projected body's coverage, less the observed one, into `difference`; calls on_end(end, cell x, cell y, by)
+// for every end inside the picture: moving it to the right by 1 px changes its cell's coverage by `by`.
 template <class OnEnd>
 void draw_difference(OutlineSpans& spans, const PinholeCamera& camera, const CoverageEvidence::Raster& raster,
                      int rows_per_cell, CoverageDifference& difference, OnEnd&& on_end) {
@@ -153,8 +153,8 @@ void draw_difference(OutlineSpans& spans, const PinholeCamera& camera, const Cov
 
 SampledRows rows_of(const PinholeCamera& camera, int cell, int rows_per_cell) {
   const float step = static_cast<float>(cell) / static_cast<float>(rows_per_cell);
-  return {.first = step / 2, .step = step,
-          .count = static_cast<int>(std::floor(static_cast<float>(camera.height) / step))};
+  return {
+      .first = step / 2, .step = step, .count = static_cast<int>(std::floor(static_cast<float>(camera.height) / step))};
 }
 
 }  // namespace
@@ -175,7 +175,8 @@ std::vector<double> CoverageLikelihood::residuals(const CoverageEvidence& eviden
       s.pixels.resize(view.skin.num_slots());
       view.skin.copy_pixels(s.projected, s.pixels);
       s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell));
-      draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference, [](const SpanEnd&, int, int, float) {});
+      draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference,
+                      [](const SpanEnd&, int, int, float) {});
     }
     residual[c] = outline_scale(raster.cell) * s.difference.finish();
   }
@@ -210,8 +211,8 @@ std::vector<double> CoverageLikelihood::estimate_noise(const CoverageEvidence& e
   return noise;
 }
 
-NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, Blur blur,
-                                              std::span<const double> pose, Scratch& scratch) const {
+NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,
+                                              Scratch& scratch) const {
   check(evidence.views.size() == impl_->views.size(), "CoverageLikelihood: evidence of {} cameras for {}",
         evidence.views.size(), impl_->views.size());
   Scratch::Impl& s = *scratch.impl_;

@@ -34,23 +34,23 @@ inline constexpr std::array<int, 5> kBlurSigma = {2, 4, 8, 16, 32};
 struct CoverageEvidence {
   static constexpr double kSubjectHeight = 280;  // pixels
   struct Raster {
-    int cell = 0;               // pixels a side
-    Image<float> observed;      // [ceil(height / cell), ceil(width / cell)] covered part, 0 to 1
-    Image<float> confidence;    // the same size; empty: 1 everywhere
-    Box occupied;               // cells with anything observed
+    int cell = 0;             // pixels a side
+    Image<float> observed;    // [ceil(height / cell), ceil(width / cell)] covered part, 0 to 1
+    Image<float> confidence;  // the same size; empty: 1 everywhere
+    Box occupied;             // cells with anything observed
   };
   struct View {
-    double trust = 0;           // 0: this camera has no say
-    double pixel_unit = 1;      // pixels that one pixel of a subject of kSubjectHeight is worth
-    double outline_length = 0;  // pixels, of the observed mask
+    double trust = 0;                               // 0: this camera has no say
+    double pixel_unit = 1;                          // pixels that one pixel of a subject of kSubjectHeight is worth
+    double outline_length = 0;                      // pixels, of the observed mask
     std::array<Raster, kBlurSigma.size()> rasters;  // by Blur
   };
-  std::vector<View> views;      // [C]
-  std::vector<double> noise;    // [C] outline variance times correlation length, px^3; may be set by the caller
+  std::vector<View> views;    // [C]
+  std::vector<double> noise;  // [C] outline variance times correlation length, px^3; may be set by the caller
 };
 
-// Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps of
-// slanting lines: isotropic outlines come out right on average). The picture's own border does not count.
+// Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps
+// of slanting lines: isotropic outlines come out right on average). The picture's own border does not count.
 double outline_length(const Mask& mask);
 
 // E and its Gauss-Newton model: E(pose + d) = energy + 2 gradient . d + d' hessian d.
@@ -72,7 +72,8 @@ class CoverageLikelihood {
   static constexpr double kLeastNoise = 1;
 
   // Shapes: one observation a camera. A camera whose observation found nothing gets no say. Only blurs from
-  // `narrowest` to `widest` are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit its camera.
+  // `narrowest` to `widest` are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit
+  // its camera.
   [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32,
                                          Blur narrowest = Blur::k2) const;
 
@@ -101,7 +102,8 @@ class CoverageLikelihood {
 
   // How noisy the outlines prove to be, seen from a pose that fits: variance times correlation length, in units of
   // pixel_unit^3, never below kLeastNoise. White noise of variance s^2 and correlation length l leaves
-  // s^2 l L / (2 sqrt(pi) sigma) after a blur wider than l, of which a fit explains some. A camera without a say: 0. [C]
+  // s^2 l L / (2 sqrt(pi) sigma) after a blur wider than l, of which a fit explains some. A camera without a say: 0.
+  // [C]
   std::vector<double> estimate_noise(const CoverageEvidence& evidence, std::span<const double> pose,
                                      Scratch& scratch) const;
 

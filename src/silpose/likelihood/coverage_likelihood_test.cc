@@ -111,12 +111,14 @@ TEST_P(CoverageDerivative, AgreesWithFiniteDifferences) {
   const auto body = GetParam().is_human ? human() : small_body();
   std::vector<PinholeCamera> cameras = {look_at_camera(640, 480, 600, {0.5, 1.2, 3.5}, {0, 0.9, 0})};
   if (GetParam().num_cameras > 1) cameras.push_back(look_at_camera(640, 480, 600, {3.5, 1.2, 0.5}, {0, 0.9, 0}));
-  for (PinholeCamera& camera : cameras) camera.distortion = {GetParam().distortion, 0, 0.5 * GetParam().distortion, 0, 0};
+  for (PinholeCamera& camera : cameras)
+    camera.distortion = {GetParam().distortion, 0, 0.5 * GetParam().distortion, 0, 0};
   const CoverageLikelihood likelihood(body, cameras, 64);
   CoverageLikelihood::Scratch scratch(likelihood);
   const std::vector<double> truth = bent_pose(*body, 0.3), pose = bent_pose(*body, 0.22);
   std::vector<Observation> observations;
-  for (const PinholeCamera& camera : cameras) observations.push_back(observation_of(render_silhouette(*body, camera, truth)));
+  for (const PinholeCamera& camera : cameras)
+    observations.push_back(observation_of(render_silhouette(*body, camera, truth)));
   const auto evidence = likelihood.prepare(observations);
   for (const Blur blur : {Blur::k4, Blur::k8}) {
     const NormalEquations equations = likelihood.linearise(evidence, blur, pose, scratch);
@@ -126,8 +128,9 @@ TEST_P(CoverageDerivative, AgreesWithFiniteDifferences) {
       const double step = 0.001;  // metres or radians
       more[d] += step;
       less[d] -= step;
-      const double slope = (likelihood.energy(evidence, blur, more, scratch) -
-                            likelihood.energy(evidence, blur, less, scratch)) / (4 * step);
+      const double slope =
+          (likelihood.energy(evidence, blur, more, scratch) - likelihood.energy(evidence, blur, less, scratch)) /
+          (4 * step);
       const auto i = static_cast<Eigen::Index>(d);
       // What one standard deviation of this DOF alone would change: the natural scale of its slope.
       const double scale = std::sqrt(equations.hessian(i, i) * equations.energy);

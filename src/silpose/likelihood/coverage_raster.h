@@ -42,10 +42,10 @@ class CoverageDifference {
   const CoverageEvidence::Raster* raster_ = nullptr;
   int width_ = 0, height_ = 0, num_dofs_ = 0;
   float per_cell_ = 1, row_weight_ = 1;
-  std::vector<float> difference_, half_blurred_, blurred_;  // [height, width] cells
-  std::vector<int32_t> end_of_cell_;                        // [height, width] row of jacobian_, or -1
-  std::vector<int32_t> end_cells_;                          // cells that hold an end
-  Row jacobian_, near_;                                     // [ends, D]
+  std::vector<float> difference_, half_blurred_, blurred_;         // [height, width] cells
+  std::vector<int32_t> end_of_cell_;                               // [height, width] row of jacobian_, or -1
+  std::vector<int32_t> end_cells_;                                 // cells that hold an end
+  Row jacobian_, near_;                                            // [ends, D]
   int model_x0_ = 0, model_x1_ = 0, model_y0_ = 0, model_y1_ = 0;  // cells the model touches
   int drawn_x0_ = 0, drawn_x1_ = 0, drawn_y0_ = 0, drawn_y1_ = 0;  // cells that are not zero
 };

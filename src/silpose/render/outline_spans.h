@@ -16,9 +16,9 @@ namespace silpose {
 
 // Where an edge of the outline crosses a row.
 struct SpanEnd {
-  float x = 0;                  // image pixels
-  float dx_dy = 0;              // of the edge, along the outline
-  float t = 0;                  // the crossing is (1 - t) * vertex a + t * vertex b
+  float x = 0;      // image pixels
+  float dx_dy = 0;  // of the edge, along the outline
+  float t = 0;      // the crossing is (1 - t) * vertex a + t * vertex b
   uint32_t vertex_a = 0, vertex_b = 0;
 };
 
@@ -54,7 +54,7 @@ class OutlineSpans {
   void find_facing(std::span<const Eigen::Vector2f> pixels);
 
   const EdgeTopology* topology_;
-  std::vector<int8_t> facing_;    // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
+  std::vector<int8_t> facing_;     // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
   std::vector<uint32_t> outline_;  // [edges] the first few are edges whose two faces differ
   std::vector<Edge> edges_;
   std::vector<std::vector<Crossing>> row_crossings_;

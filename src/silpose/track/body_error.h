@@ -1,8 +1,7 @@
 // BodyError: how far an estimate may be off because the subject is not built as the body is. Bones are allowed to be
-// longer or shorter (body/stretchable.h); a pose fitted with wrong lengths is off by how the fit answers to them, and all
-// frames are off alike, so that neither time nor a good overlap makes it smaller.
-// How wrong the body is shows in how badly its outline fits: with outlines as clean as exact masks of the right body
-// leave them nothing is added.
+// longer or shorter (body/stretchable.h); a pose fitted with wrong lengths is off by how the fit answers to them, and
+// all frames are off alike, so that neither time nor a good overlap makes it smaller. How wrong the body is shows in
+// how badly its outline fits: with outlines as clean as exact masks of the right body leave them nothing is added.
 // Based on: consider covariance of parameters that are not estimated (references.bib: schmidt1966).
 // Threads: constant after construction; one CoverageLikelihood::Scratch of likelihood() per thread.
 #pragma once

@@ -38,9 +38,7 @@ void FittedFilter::start(std::span<const StartingPose> starts) {
   report();
 }
 
-void FittedFilter::add(std::span<const StartingPose> starts) {
-  mixture_.add(poses_of(starts));
-}
+void FittedFilter::add(std::span<const StartingPose> starts) { mixture_.add(poses_of(starts)); }
 
 FilterReport FittedFilter::step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) {
   const Stopwatch stopwatch;
@@ -119,7 +117,8 @@ PoseSpread FittedFilter::spread() const {
     for (size_t d = 0; d < pose.size(); ++d) {
       double off = pose[d] - centre[d];
       if (body.skeleton.dofs()[d].is_periodic) off = wrap_angle(off);
-      spread.dofs[d] += weights[i] * (covariance(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(d)) + off * off);
+      spread.dofs[d] +=
+          weights[i] * (covariance(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(d)) + off * off);
     }
     const auto landmarks = landmark_positions(body, pose);
     const std::vector<Eigen::Vector3d> variances = landmark_variances(body, pose, covariance);

@@ -39,7 +39,7 @@ class FittedFilter final : public PoseFilter {
   ParticleSet particles_;
   BodyError body_error_;
   BodyError::Variance from_body_;  // of the last estimate
-  std::vector<double> noise_;  // [C]; empty until the first step
+  std::vector<double> noise_;      // [C]; empty until the first step
 };
 
 }  // namespace silpose

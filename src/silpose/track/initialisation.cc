@@ -177,7 +177,8 @@ StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, con
       auto row = placed.row(static_cast<Eigen::Index>(k));
       const std::span<double> pose(row.data(), static_cast<size_t>(body.skeleton.num_dofs()));
       // Depth first from a body of average proportions: an upright body covers about a tenth of its height squared.
-      double depth = 0.32 * body.height_m * std::sqrt(camera.fx * camera.fy) * window.scale_x / std::sqrt(observed.area);
+      double depth =
+          0.32 * body.height_m * std::sqrt(camera.fx * camera.fy) * window.scale_x / std::sqrt(observed.area);
       Eigen::Vector2d aim = target;
       for (int iteration = 0; iteration < 5; ++iteration) {
         const Eigen::Vector3d root =
@@ -230,8 +231,8 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::
   std::ranges::move(mirrored, std::back_inserter(starts));
   keep_distinct(body, options.merge_distance, static_cast<size_t>(options.num_starts), starts);
   for (int round = 0; round < options.num_rounds && starts.front().fit.energy > kExplained; ++round) {
-    std::vector<Candidate> variants = promising_variants(likelihood, evidence, camera.centre_in_world(), starts, options,
-                                                         static_cast<uint64_t>(round));
+    std::vector<Candidate> variants = promising_variants(likelihood, evidence, camera.centre_in_world(), starts,
+                                                         options, static_cast<uint64_t>(round));
     fit_all(likelihood, evidence, kVariantStages, variants);
     std::ranges::move(variants, std::back_inserter(starts));
     keep_distinct(body, options.merge_distance, static_cast<size_t>(options.num_starts), starts);
@@ -243,7 +244,8 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::
   for (size_t c = 0; c < noise.size(); ++c) {
     if (noise[c] > 0) evidence.noise[c] = noise[c] * std::pow(evidence.views[c].pixel_unit, 3);
   }
-  for (Candidate& start : starts) start.fit.energy = likelihood.energy(evidence, Blur::k4, view(start.fit.pose), scratch);
+  for (Candidate& start : starts)
+    start.fit.energy = likelihood.energy(evidence, Blur::k4, view(start.fit.pose), scratch);
   const auto log_likelihood = [&](const Candidate& c) {
     return -0.5 * c.fit.cost() + options.facing_bonus * faces_camera(body, camera, view(c.fit.pose));
   };

@@ -14,9 +14,9 @@
 namespace silpose {
 
 struct InitialisationOptions {
-  int num_per_heading = 5;  // of eight: candidates that are fitted finely
-  int num_varied = 4;       // the best, of which other limbs are tried
-  int num_rounds = 6;       // of trying other limbs, at most: a start that explains the silhouette ends them
+  int num_per_heading = 5;    // of eight: candidates that are fitted finely
+  int num_varied = 4;         // the best, of which other limbs are tried
+  int num_rounds = 6;         // of trying other limbs, at most: a start that explains the silhouette ends them
   int num_random_limbs = 60;  // tried of each, besides reflections and exchanges
   int num_fitted = 4;         // of those of each, the most promising
   int num_starts = 8;

@@ -41,7 +41,8 @@ TEST_F(InitialisationTest, DescendsToABentPoseFromAStraightOne) {
   CoverageLikelihood::Scratch scratch(likelihood_);
   const Observation seen = see(truth);
   const auto evidence = likelihood_.prepare({&seen, 1});
-  const double straight = likelihood_.energy(evidence, Blur::k4, std::vector<double>{0.2, 0.5, 0.1, 0, 0, 0, 0, 0}, scratch);
+  const double straight =
+      likelihood_.energy(evidence, Blur::k4, std::vector<double>{0.2, 0.5, 0.1, 0, 0, 0, 0, 0}, scratch);
   EXPECT_LT(likelihood_.energy(evidence, Blur::k4, starts[0].pose, scratch), 0.1 * straight);
 }
 

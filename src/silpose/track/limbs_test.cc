@@ -59,15 +59,16 @@ TEST(ExchangedLimbs, ABodyWithoutPairsHasNone) {
 }
 
 const BodyModel& human() {
-  static const BodyModel body =
-      build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value();
+  static const BodyModel body = build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value();
   return body;
 }
 
 std::vector<double> walking_pose() {
   const BodyModel& body = human();
   std::vector<double> pose = standing_pose(body);
-  const auto set = [&](const char* name, double degrees) { pose[static_cast<size_t>(*body.skeleton.find_dof(name))] = to_radians(degrees); };
+  const auto set = [&](const char* name, double degrees) {
+    pose[static_cast<size_t>(*body.skeleton.find_dof(name))] = to_radians(degrees);
+  };
   set("root_ry", 30);
   set("root_rz", 4);
   set("thorax_ry", 10);
@@ -118,8 +119,10 @@ TEST(MirroredInDepth, IsTheReflectionOfEveryJointWithItsPartner) {
   const auto before = landmark_positions(body, pose), after = landmark_positions(body, mirrored);
   for (size_t i = 0; i < names.size(); ++i) {
     std::string partner = names[i];
-    if (partner.starts_with("right_")) partner = "left_" + partner.substr(6);
-    else if (partner.starts_with("left_")) partner = "right_" + partner.substr(5);
+    if (partner.starts_with("right_"))
+      partner = "left_" + partner.substr(6);
+    else if (partner.starts_with("left_"))
+      partner = "right_" + partner.substr(5);
     const auto j = static_cast<size_t>(std::ranges::find(names, partner) - names.begin());
     const Eigen::Vector3d expected = before[i] - 2 * normal.dot(before[i] - root) * normal;
     EXPECT_LT((after[j] - expected).norm(), 0.015) << names[i];  // the mesh is not quite symmetric

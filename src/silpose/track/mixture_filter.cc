@@ -13,8 +13,8 @@ namespace silpose {
 namespace {
 
 // How well a starting pose is known, and how fast a body may be moving when it is first seen.
-constexpr double kStartAngle = 0.15, kStartMetres = 0.05;        // radians, metres
-constexpr double kStartTurn = 2.0, kStartSpeed = 1.0;            // per second
+constexpr double kStartAngle = 0.15, kStartMetres = 0.05;  // radians, metres
+constexpr double kStartTurn = 2.0, kStartSpeed = 1.0;      // per second
 // A limb that jumped may be anywhere near where it landed.
 constexpr double kJumpAngle = 0.5, kJumpTurn = 3.0;
 constexpr FitStage kJumpStages[] = {{Blur::k8, 2}, {Blur::k4, 3}, {Blur::k2, 3}};
@@ -35,9 +35,9 @@ double log_determinant(const Eigen::MatrixXd& positive) {
 struct MixtureFilter::Child {
   GaussianComponent component;  // predicted, with the limb that jumped set free; then conditioned
   PosePrior prior;
-  Eigen::VectorXd start;        // of the fit
+  Eigen::VectorXd start;  // of the fit
   PoseFit fit;
-  double log_weight = 0;        // before this step's evidence
+  double log_weight = 0;  // before this step's evidence
   bool jumped = false;
 };
 
@@ -135,7 +135,8 @@ std::vector<MixtureFilter::Child> MixtureFilter::candidates(const CoverageEviden
   const Eigen::Vector3d eye = fine_->cameras().front().centre_in_world();
   for (const size_t p : order) {
     Rng rng(options_.seed, steps_, p);
-    for (LimbVariant& variant : limb_variants(body, limbs_, view(fitted[p].fit.pose), eye, options_.num_random_limbs, rng)) {
+    for (LimbVariant& variant :
+         limb_variants(body, limbs_, view(fitted[p].fit.pose), eye, options_.num_random_limbs, rng)) {
       variants.push_back({std::move(variant), p});
     }
   }
@@ -156,7 +157,8 @@ std::vector<MixtureFilter::Child> MixtureFilter::candidates(const CoverageEviden
     auto& of_parent = known[variant.parent];
     if (std::ssize(of_parent) > options_.num_fitted) continue;
     std::vector<Eigen::Vector3d> x = landmark_positions(body, variant.pose);
-    if (std::ranges::any_of(of_parent, [&](const auto& other) { return furthest_apart(x, other) < options_.novelty; })) {
+    if (std::ranges::any_of(of_parent,
+                            [&](const auto& other) { return furthest_apart(x, other) < options_.novelty; })) {
       continue;
     }
     of_parent.push_back(std::move(x));
@@ -191,7 +193,8 @@ void MixtureFilter::keep_best(std::vector<Child> children, MixtureReport& report
   const BodyModel& body = fine_->body();
   for (Child& child : children) {
     // The evidence by Laplace's method: likelihood and prior at the best pose, times how much of the prior is left.
-    child.log_weight -= 0.5 * (child.fit.cost() + log_determinant(child.fit.information) - log_determinant(child.prior.information));
+    child.log_weight -=
+        0.5 * (child.fit.cost() + log_determinant(child.fit.information) - log_determinant(child.prior.information));
   }
   std::ranges::stable_sort(children, std::greater<>{}, &Child::log_weight);
   std::vector<std::vector<Eigen::Vector3d>> landmarks;

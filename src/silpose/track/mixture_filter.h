@@ -20,13 +20,13 @@ namespace silpose {
 
 struct MixtureOptions {
   int num_hypotheses = 4;
-  int num_parents = 2;        // of new hypotheses, the best
-  int num_random_limbs = 40;  // tried for each parent
-  int num_fitted = 3;         // new hypotheses fitted for each parent, the most promising
+  int num_parents = 2;         // of new hypotheses, the best
+  int num_random_limbs = 40;   // tried for each parent
+  int num_fitted = 3;          // new hypotheses fitted for each parent, the most promising
   double acceleration = 1.25;  // times motion/noise.h's acceleration_deviation
   double rest_weight = 0.2;    // pose_fit.h
   double velocity_decay_per_s = 0;
-  double jump_log_prior = -6;   // log-probability of a hypothesis that jumped
+  double jump_log_prior = -6;    // log-probability of a hypothesis that jumped
   double novelty = 0.12;         // metres: new hypotheses have a joint at least as far from their parent
   double merge_distance = 0.05;  // metres: hypotheses whose every joint is nearer are one
   uint64_t seed = 1;
@@ -65,7 +65,7 @@ class MixtureFilter {
   std::shared_ptr<const CoverageLikelihood> fine_, coarse_;
   MixtureOptions options_;
   std::vector<Limb> limbs_;
-  std::vector<double> acceleration_;              // [D]
+  std::vector<double> acceleration_;  // [D]
   std::vector<GaussianComponent> hypotheses_;
   uint64_t steps_ = 0;
 };

@@ -49,7 +49,8 @@ std::vector<Eigen::Vector3d> landmark_spread(const BodyModel& body, const Partic
 
 PoseSpread spread_of(const BodyModel& body, const ParticleSet& particles) {
   const StateBatch poses = particles.states.leftCols(body.skeleton.num_dofs());
-  return {weighted_deviation(poses, particles.weights(), periodic_dofs(body.skeleton)), landmark_spread(body, particles)};
+  return {weighted_deviation(poses, particles.weights(), periodic_dofs(body.skeleton)),
+          landmark_spread(body, particles)};
 }
 
 // Root and pose in one state, compared on the whole image.
@@ -57,9 +58,10 @@ class JointFilter final : public PoseFilter {
  public:
   JointFilter(const TrackerOptions& options, Renderers renderers)
       : likelihood_(std::move(renderers), {.sharpness = *options.sharpness}),
-        filter_(options, likelihood_,
-                dofs_where(options.body->skeleton, [&](const Dof& dof) { return !options.root_fixed || !is_root(dof); }),
-                options.seed) {}
+        filter_(
+            options, likelihood_,
+            dofs_where(options.body->skeleton, [&](const Dof& dof) { return !options.root_fixed || !is_root(dof); }),
+            options.seed) {}
 
   void start(std::span<const StartingPose> starts) override {
     held_ = starts.front().pose;
@@ -86,11 +88,14 @@ class TwoFilters final : public PoseFilter {
   TwoFilters(const TrackerOptions& options, const Renderers& renderers)
       : skeleton_(options.body->skeleton),
         root_fixed_(options.root_fixed),
-        cropped_(renderers, {.comparison = Comparison::kCropped, .sharpness = *options.sharpness, .resolution = kCroppedSize}),
+        cropped_(renderers,
+                 {.comparison = Comparison::kCropped, .sharpness = *options.sharpness, .resolution = kCroppedSize}),
         whole_(renderers, {.sharpness = *options.sharpness}),
-        pose_filter_(options, cropped_, dofs_where(skeleton_, [&](const Dof& dof) {
-                       return root_fixed_ ? !is_root(dof) : !(is_root(dof) && dof.is_translation);
-                     }),
+        pose_filter_(options, cropped_,
+                     dofs_where(skeleton_,
+                                [&](const Dof& dof) {
+                                  return root_fixed_ ? !is_root(dof) : !(is_root(dof) && dof.is_translation);
+                                }),
                      options.seed),
         root_filter_(options, whole_, dofs_where(skeleton_, is_root), options.seed + 1) {}
 

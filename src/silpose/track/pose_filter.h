@@ -1,9 +1,9 @@
 // PoseFilter: what a tracker drives, frame by frame: a set of weighted poses that follows the observations.
 //
-// Contract: start() before anything else, and again after losing the subject. step() takes what was seen; coast() is for
-// an instant without a usable observation. After each, particles() holds states whose first D columns are poses within
-// the limits, estimate() one pose made of them, and spread() how far the truth may be from it. The same seed and calls
-// give the same states on any number of threads.
+// Contract: start() before anything else, and again after losing the subject. step() takes what was seen; coast() is
+// for an instant without a usable observation. After each, particles() holds states whose first D columns are poses
+// within the limits, estimate() one pose made of them, and spread() how far the truth may be from it. The same seed and
+// calls give the same states on any number of threads.
 //
 // Threads: one thread per filter; steps use all cores inside.
 #pragma once
@@ -49,8 +49,8 @@ class PoseFilter {
   [[nodiscard]] virtual std::vector<double> noise() const { return {}; }
 };
 
-// What filters compare with: renderers of the tracker's level of detail, one a camera, for those that sample; a fine and
-// a coarse mesh for those that fit. All of the same body before the same cameras.
+// What filters compare with: renderers of the tracker's level of detail, one a camera, for those that sample; a fine
+// and a coarse mesh for those that fit. All of the same body before the same cameras.
 struct Likelihoods {
   std::vector<std::shared_ptr<const BatchRenderer>> renderers;
   std::shared_ptr<const CoverageLikelihood> fine, coarse;

@@ -16,9 +16,9 @@ constexpr double kSmallestGain = 0.05;    // of the cost: less ends a stage
 struct Point {
   Eigen::VectorXd pose;
   double energy = 0, prior_cost = 0, other_cost = 0;
-  Eigen::VectorXd gradient;      // of half the whole cost
-  Eigen::MatrixXd silhouette;    // hessian of E/2
-  Eigen::MatrixXd hessian;       // of half the whole cost
+  Eigen::VectorXd gradient;    // of half the whole cost
+  Eigen::MatrixXd silhouette;  // hessian of E/2
+  Eigen::MatrixXd hessian;     // of half the whole cost
   [[nodiscard]] double cost() const { return energy + prior_cost + other_cost; }
 };
 

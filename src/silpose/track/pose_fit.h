@@ -29,19 +29,19 @@ inline constexpr FitStage kTrackingStages[] = {{Blur::k8, 4}, {Blur::k4, 3}, {Bl
 inline constexpr FitStage kStartStages[] = {{Blur::k32, 4}, {Blur::k16, 5}, {Blur::k8, 5}, {Blur::k4, 4}};
 
 struct PoseFit {
-  Eigen::VectorXd pose;       // [D] within the limits
-  double energy = 0;          // E at the last stage's blur
-  double prior_cost = 0;      // of the prior, the limits and the pull to rest
-  Eigen::MatrixXd hessian;    // [D, D] of E/2: the information that the silhouette gives
+  Eigen::VectorXd pose;         // [D] within the limits
+  double energy = 0;            // E at the last stage's blur
+  double prior_cost = 0;        // of the prior, the limits and the pull to rest
+  Eigen::MatrixXd hessian;      // [D, D] of E/2: the information that the silhouette gives
   Eigen::MatrixXd information;  // [D, D] with the prior's, the limits' and the pull to rest
   int num_iterations = 0;
   [[nodiscard]] double cost() const { return energy + prior_cost; }
 };
 
 struct PoseFitOptions {
-  double max_rotation = 0.35;     // radians a step
-  double max_translation = 0.3;   // metres a step
-  double rest_weight = 0;         // of a pull to the rest pose, in units of (half a range)^-2
+  double max_rotation = 0.35;    // radians a step
+  double max_translation = 0.3;  // metres a step
+  double rest_weight = 0;        // of a pull to the rest pose, in units of (half a range)^-2
 };
 
 PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, const PosePrior& prior,

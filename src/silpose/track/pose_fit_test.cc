@@ -43,7 +43,8 @@ TEST_F(PoseFitTest, ClimbsToTheTruthFromAfar) {
 TEST_F(PoseFitTest, AStrongPriorHolds) {
   const std::vector<double> truth = {0.3, 0.5, 0, 0, 0, 0.5, 0, 0}, mean = {0, 0.5, 0, 0, 0, 0, 0, 0};
   CoverageLikelihood::Scratch scratch(likelihood_);
-  const PoseFit fit = fit_pose(likelihood_, see(truth), prior(mean, 1e-5), vector_of(mean), kTrackingStages, {}, scratch);
+  const PoseFit fit =
+      fit_pose(likelihood_, see(truth), prior(mean, 1e-5), vector_of(mean), kTrackingStages, {}, scratch);
   EXPECT_LT((fit.pose - vector_of(mean)).cwiseAbs().maxCoeff(), 1e-3);
 }
 

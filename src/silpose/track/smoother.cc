@@ -23,7 +23,8 @@ constexpr double kMaxRotation = 0.35, kMaxTranslation = 0.3;
 class BlockTridiagonal {
  public:
   BlockTridiagonal(size_t num_frames, Eigen::Index D)
-      : D_(D), diagonal_((num_frames + 1) / 2, MatrixXd::Zero(2 * D, 2 * D)),
+      : D_(D),
+        diagonal_((num_frames + 1) / 2, MatrixXd::Zero(2 * D, 2 * D)),
         below_(diagonal_.size(), MatrixXd::Zero(2 * D, 2 * D)) {
     // An odd last block has a second half of its own that ties to nothing.
     if (num_frames % 2 == 1) diagonal_.back().bottomRightCorner(D, D).setIdentity();
@@ -63,7 +64,8 @@ class BlockTridiagonal {
       x[k] = factors_[k].solve(x[k]);
     }
     std::vector<VectorXd> result;
-    for (size_t t = 0; t < right.size(); ++t) result.emplace_back(x[t / 2].segment(static_cast<Eigen::Index>(t % 2) * D_, D_));
+    for (size_t t = 0; t < right.size(); ++t)
+      result.emplace_back(x[t / 2].segment(static_cast<Eigen::Index>(t % 2) * D_, D_));
     return result;
   }
 
@@ -103,7 +105,10 @@ class Problem {
  public:
   Problem(const CoverageLikelihood& likelihood, std::span<const ClipInstant> clip, const std::vector<bool>& seen,
           const SmootherOptions& options)
-      : likelihood_(likelihood), clip_(clip), seen_(seen), options_(options),
+      : likelihood_(likelihood),
+        clip_(clip),
+        seen_(seen),
+        options_(options),
         acceleration_(acceleration_deviation(likelihood.body().skeleton)) {
     for (double& deviation : acceleration_) deviation *= options.acceleration;
   }
@@ -129,7 +134,8 @@ class Problem {
           at.gradient[t] = std::move(equations.gradient);
           at.hessian[t] = std::move(equations.hessian);
         }
-        costs[t] += add_limits(likelihood_.body().skeleton, poses[t], options_.rest_weight, at.gradient[t], at.hessian[t]);
+        costs[t] +=
+            add_limits(likelihood_.body().skeleton, poses[t], options_.rest_weight, at.gradient[t], at.hessian[t]);
       }
     });
     for (const double cost : costs) at.cost += cost;

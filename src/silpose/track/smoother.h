@@ -1,5 +1,5 @@
-// smooth_poses(): the poses of a whole clip at once: each must fit its silhouettes, and together they must move smoothly.
-// Least squares over all frames, from wide blur to narrow. It polishes a path; it cannot leave a wrong basin.
+// smooth_poses(): the poses of a whole clip at once: each must fit its silhouettes, and together they must move
+// smoothly. Least squares over all frames, from wide blur to narrow. It polishes a path; it cannot leave a wrong basin.
 // Based on: Gauss-Newton with a block-banded normal matrix; marginal covariances by the block form of the Takahashi
 // recursion (references.bib: nocedal2006, takahashi1973).
 // Threads: a function without state; uses all cores and gives the same result on any number.
@@ -19,7 +19,7 @@ struct SmootherOptions {
   std::vector<FitStage> stages = {{Blur::k8, 4}, {Blur::k4, 4}, {Blur::k2, 4}};
   double acceleration = 1.25;  // times motion/noise.h's acceleration_deviation
   double rest_weight = 0.2;    // pose_fit.h
-  std::vector<double> noise;  // [C] of the outlines, in units of pixel_unit^3; empty: that of exact masks
+  std::vector<double> noise;   // [C] of the outlines, in units of pixel_unit^3; empty: that of exact masks
 };
 
 struct SmoothedPoses {
@@ -28,8 +28,8 @@ struct SmoothedPoses {
   double cost = 0;                           // at the last stage
 };
 
-// Shapes: poses [T][D], an instant each. An instant of which `seen` [T] is false is bridged by motion alone. Whole turns
-// of periodic DOF are kept from one pose to the next. `proceed` is asked between iterations; false ends early.
+// Shapes: poses [T][D], an instant each. An instant of which `seen` [T] is false is bridged by motion alone. Whole
+// turns of periodic DOF are kept from one pose to the next. `proceed` is asked between iterations; false ends early.
 SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, std::span<const ClipInstant> clip,
                            const std::vector<bool>& seen, std::vector<Eigen::VectorXd> poses,
                            const SmootherOptions& options, const std::function<bool()>& proceed = {});

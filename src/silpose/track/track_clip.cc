@@ -78,10 +78,10 @@ class ClipTracker {
     if (!stopped_) pass(last_, first_, last_pose_);
     if (!stopped_) pass(first_, last_, last_pose_);
     if (stopped_) return {};
-    const SmoothedPoses smoothed =
-        smooth_poses(*likelihood_, clip_.subspan(first_, last_ - first_ + 1),
-                     {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
-                     best_path(), {.noise = noise_}, [&] { return proceed(); });
+    const SmoothedPoses smoothed = smooth_poses(
+        *likelihood_, clip_.subspan(first_, last_ - first_ + 1),
+        {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
+        best_path(), {.noise = noise_}, [&] { return proceed(); });
     if (stopped_) return {};
     return reports(smoothed);
   }
@@ -119,8 +119,8 @@ class ClipTracker {
     for (const size_t t : starts) {
       if (!proceed()) break;
       Rng rng(options_.seed, t);
-      const auto found = initialise(*likelihood_, clip_[t].observations,
-                                    proposal.propose(clip_[t].observations.front(), 0, rng));
+      const auto found =
+          initialise(*likelihood_, clip_[t].observations, proposal.propose(clip_[t].observations.front(), 0, rng));
       if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
     }
     return chosen;
@@ -286,9 +286,9 @@ class ClipTracker {
         for (const double v : variance) report.spread.push_back(std::sqrt(std::max(v, 0.0)));
         for (const Eigen::Vector3d& v : of_landmarks) report.landmark_spread.emplace_back(v.cwiseMax(0).cwiseSqrt());
         report.effective_sample_size = 1;
-        report.state = i == 0                ? StepReport::State::kInitialised
-                       : seen_[first_ + i]   ? StepReport::State::kTracked
-                                             : StepReport::State::kCoasted;
+        report.state = i == 0              ? StepReport::State::kInitialised
+                       : seen_[first_ + i] ? StepReport::State::kTracked
+                                           : StepReport::State::kCoasted;
         if (!seen_[first_ + i]) continue;
         for (size_t c = 0; c < options_.cameras.size(); ++c) {
           if (report.trust[c].nothing_found) continue;
@@ -304,9 +304,9 @@ class ClipTracker {
 
   static constexpr double kNumPasses = 3;
   static constexpr int kBodyErrorVertices = 800;
-  static constexpr double kPassShare = 0.35;      // of the whole work, one pass over the whole clip
-  static constexpr double kTransitionScale = 4;   // times acceleration_deviation: hypotheses are fits, not truths
-  static constexpr double kTransitionCap = 30;    // of one DOF
+  static constexpr double kPassShare = 0.35;     // of the whole work, one pass over the whole clip
+  static constexpr double kTransitionScale = 4;  // times acceleration_deviation: hypotheses are fits, not truths
+  static constexpr double kTransitionCap = 30;   // of one DOF
 
   TrackerOptions options_;
   std::span<const ClipInstant> clip_;

@@ -36,7 +36,8 @@ struct Tracker::Impl {
   explicit Impl(const TrackerOptions& given) : options(given.resolved()) {
     options.check();
     const auto detail = [&](int num_vertices) {
-      return num_vertices == 0 ? options.body : std::make_shared<const BodyModel>(level_of_detail(*options.body, num_vertices));
+      return num_vertices == 0 ? options.body
+                               : std::make_shared<const BodyModel>(level_of_detail(*options.body, num_vertices));
     };
     const auto fine = detail(*options.lod_vertices);
     likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
@@ -115,8 +116,8 @@ Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
 StepReport Tracker::step(std::span<const Observation> observations, int64_t frame_idx, int64_t time_ns) {
   Impl& t = *impl_;
-  check(observations.size() == t.options.cameras.size(), "Tracker: {} observations for {} cameras",
-        observations.size(), t.options.cameras.size());
+  check(observations.size() == t.options.cameras.size(), "Tracker: {} observations for {} cameras", observations.size(),
+        t.options.cameras.size());
   check(t.steps == 0 || time_ns > t.last_time_ns, "Tracker: time {} ns does not come after {} ns", time_ns,
         t.last_time_ns);
   StepReport report{.frame_idx = frame_idx, .time_ns = time_ns};

@@ -39,7 +39,8 @@ class Tracker {
   // per second: D' = 2 D.
   [[nodiscard]] const StateBatch& particles() const;
   [[nodiscard]] std::span<const double> log_weights() const;
-  // Outline noise that the fitted filter found, in units of pixel_unit^3 (likelihood/coverage_likelihood.h). [C], or empty.
+  // Outline noise that the fitted filter found, in units of pixel_unit^3 (likelihood/coverage_likelihood.h). [C], or
+  // empty.
   [[nodiscard]] std::vector<double> noise() const;
 
  private:

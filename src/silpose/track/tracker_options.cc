@@ -44,8 +44,9 @@ void TrackerOptions::check() const {
             "hypotheses are fitted: they go neither with particles and layers nor with preset thesis");
     require(*all.num_hypotheses >= 1 && *all.num_hypotheses <= 64,
             fmt::format("{} hypotheses, not within 1..64", *all.num_hypotheses));
-    require(!all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.sharpness,
-            "motion, sigma, resampling, regenerate and sharpness are of the sampling filters: give particles or layers");
+    require(
+        !all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.sharpness,
+        "motion, sigma, resampling, regenerate and sharpness are of the sampling filters: give particles or layers");
   } else {
     require(*all.num_particles >= 2 && *all.num_particles <= 1'000'000,
             fmt::format("{} particles, not within 2..1000000", *all.num_particles));

@@ -17,27 +17,27 @@ namespace silpose {
 enum class Estimate { kMean, kMode, kCluster };
 
 struct TrackerOptions {
-  std::shared_ptr<const BodyModel> body;       // full mesh; the tracker makes its own level of detail
-  std::vector<PinholeCamera> cameras;          // [C]
-  std::string preset = "default";              // "default", "accurate" or "thesis"; fills what is left unset below
+  std::shared_ptr<const BodyModel> body;  // full mesh; the tracker makes its own level of detail
+  std::vector<PinholeCamera> cameras;     // [C]
+  std::string preset = "default";         // "default", "accurate" or "thesis"; fills what is left unset below
   // The fitted mixture; unset where a sampling filter is asked for.
   std::optional<int> num_hypotheses;
-  std::optional<bool> smooth;                  // a batch fit over the clip afterwards; only track_clip() does it
+  std::optional<bool> smooth;  // a batch fit over the clip afterwards; only track_clip() does it
   // The sampling filters: preset thesis, or any other with one of the first two set.
-  std::optional<int> num_particles;            // per layer; set alone it makes the filter plain
-  std::optional<int> num_layers;               // 1: plain
-  std::optional<std::string> motion;           // motion/motion_model.h
-  std::optional<double> sigma_deg;             // of a typical rotational DOF per 1/30 s; the others scale with it
-  std::optional<std::string> resampling;       // filter/resampling.h
-  double resample_below = 1;                   // of n_eff / N; 1: every step
-  std::optional<double> regenerate;            // fraction of the comb
+  std::optional<int> num_particles;       // per layer; set alone it makes the filter plain
+  std::optional<int> num_layers;          // 1: plain
+  std::optional<std::string> motion;      // motion/motion_model.h
+  std::optional<double> sigma_deg;        // of a typical rotational DOF per 1/30 s; the others scale with it
+  std::optional<std::string> resampling;  // filter/resampling.h
+  double resample_below = 1;              // of n_eff / N; 1: every step
+  std::optional<double> regenerate;       // fraction of the comb
   std::optional<double> sharpness;
   std::optional<Estimate> estimate;
-  bool root_fixed = false;                     // the six root DOF stay where they started
-  std::optional<int> lod_vertices;             // of the mesh that is compared; 0: the body's own
+  bool root_fixed = false;          // the six root DOF stay where they started
+  std::optional<int> lod_vertices;  // of the mesh that is compared; 0: the body's own
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
-  std::shared_ptr<const Proposal> proposal;    // candidates for the start and for regeneration; absent: common poses
+  std::shared_ptr<const Proposal> proposal;  // candidates for the start and for regeneration; absent: common poses
 
   // Errors: throws std::invalid_argument that names the option and its value.
   void check() const;
