@@ -104,6 +104,16 @@ CoverageLikelihood::~CoverageLikelihood() = default;
 const BodyModel& CoverageLikelihood::body() const { return *impl_->body; }
 std::span<const PinholeCamera> CoverageLikelihood::cameras() const { return impl_->cameras; }
 
+void CoverageEvidence::set_noise(std::span<const double> relative) {
+  for (size_t c = 0; c < relative.size(); ++c) {
+    if (relative[c] > 0) noise[c] = relative[c] * std::pow(views[c].pixel_unit, 3);
+  }
+}
+
+double CoverageEvidence::relative_noise(size_t camera_idx) const {
+  return noise[camera_idx] / std::pow(views[camera_idx].pixel_unit, 3);
+}
+
 CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observations, Blur widest,
                                              Blur narrowest) const {
   check(observations.size() == impl_->cameras.size(), "CoverageLikelihood: {} observations for {} cameras",

@@ -47,6 +47,11 @@ struct CoverageEvidence {
   };
   std::vector<View> views;    // [C]
   std::vector<double> noise;  // [C] outline variance times correlation length, px^3; may be set by the caller
+
+  // Sets the noise of the cameras that have one, in units of pixel_unit^3 (as estimate_noise() gives it). [C], or
+  // empty.
+  void set_noise(std::span<const double> relative);
+  [[nodiscard]] double relative_noise(size_t camera_idx) const;
 };
 
 // Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps

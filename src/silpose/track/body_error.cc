@@ -20,7 +20,7 @@ double wrongness(const CoverageEvidence& evidence) {
   double least = kAnyBody;
   for (size_t c = 0; c < evidence.views.size(); ++c) {
     if (evidence.views[c].trust <= 0) continue;
-    least = std::min(least, evidence.noise[c] / std::pow(evidence.views[c].pixel_unit, 3));
+    least = std::min(least, evidence.relative_noise(c));
   }
   return std::clamp(std::log(least / kRightBody) / std::log(kAnyBody / kRightBody), 0.0, 1.0);
 }

@@ -12,6 +12,7 @@ namespace {
 
 // How many frames the estimate of the noise looks back.
 constexpr double kNoiseMemory = 10;
+
 MixtureOptions mixture_options(const TrackerOptions& options) {
   return {.num_hypotheses = *options.num_hypotheses, .seed = options.seed};
 }
@@ -44,7 +45,7 @@ FilterReport FittedFilter::step(std::span<const Observation> observations, doubl
   const Stopwatch stopwatch;
   CoverageEvidence evidence = fine_->prepare(observations, Blur::k8);
   if (noise_.empty()) update_noise(evidence);
-  for (size_t c = 0; c < noise_.size(); ++c) evidence.noise[c] = noise_[c] * std::pow(evidence.views[c].pixel_unit, 3);
+  evidence.set_noise(noise_);
   mixture_.step(evidence, dt_s);
   update_noise(evidence);
   const FilterReport stepped = report();

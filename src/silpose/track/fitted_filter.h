@@ -27,7 +27,6 @@ class FittedFilter final : public PoseFilter {
   [[nodiscard]] std::vector<double> estimate() const override;
   [[nodiscard]] PoseSpread spread() const override;
 
-  [[nodiscard]] const MixtureFilter& mixture() const { return mixture_; }
   [[nodiscard]] std::vector<double> noise() const override { return noise_; }
 
  private:

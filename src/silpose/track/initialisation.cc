@@ -5,13 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/shape/normalised_silhouette.h"
-#include "silpose/track/limbs.h"
+#include "silpose/track/limb_search.h"
 
 namespace silpose {
 namespace {
@@ -82,8 +81,6 @@ double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::spa
   return (root.rotation * Eigen::Vector3d::UnitZ()).dot((camera.centre_in_world() - root.translation).normalized());
 }
 
-std::span<const double> view(const Eigen::VectorXd& pose) { return {pose.data(), static_cast<size_t>(pose.size())}; }
-
 struct Candidate {
   PosePrior prior;
   PoseFit fit;
@@ -124,33 +121,19 @@ void keep_distinct(const BodyModel& body, double distance, size_t most, std::vec
   });
 }
 
-// Of the best starts, other limbs: those that one evaluation finds most promising, none too near where it came from.
+// Of the best starts, with the limbs that look most promising.
 std::vector<Candidate> promising_variants(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence,
                                           const Eigen::Vector3d& eye, std::span<const Candidate> starts,
                                           const InitialisationOptions& options, uint64_t round) {
-  const BodyModel& body = likelihood.body();
-  const std::vector<Limb> limbs = limbs_of(body.skeleton);
+  const Skeleton& skeleton = likelihood.body().skeleton;
+  const std::vector<Limb> limbs = limbs_of(skeleton);
+  const LimbSearchOptions search{options.num_random_limbs, options.num_fitted, kNovelty};
   std::vector<Candidate> chosen;
   for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
     Rng rng(options.seed, round, i);
-    const auto variants = limb_variants(body, limbs, view(starts[i].fit.pose), eye, options.num_random_limbs, rng);
-    std::vector<double> energy(variants.size());
-    parallel_for(variants.size(), 8, [&](size_t begin, size_t end) {
-      CoverageLikelihood::Scratch scratch(likelihood);
-      for (size_t v = begin; v < end; ++v) {
-        energy[v] = likelihood.energy(evidence, Blur::k4, variants[v].pose, scratch);
-      }
-    });
-    std::vector<size_t> order(variants.size());
-    std::iota(order.begin(), order.end(), size_t{0});
-    std::ranges::stable_sort(order, {}, [&](size_t v) { return energy[v]; });
-    std::vector<std::vector<Eigen::Vector3d>> known = {landmark_positions(body, view(starts[i].fit.pose))};
-    for (const size_t v : order) {
-      if (std::ssize(known) > options.num_fitted) break;
-      auto x = landmark_positions(body, variants[v].pose);
-      if (std::ranges::any_of(known, [&](const auto& other) { return furthest_apart(x, other) < kNovelty; })) continue;
-      known.push_back(std::move(x));
-      chosen.push_back(candidate_at(body.skeleton, variants[v].pose));
+    for (const LimbVariant& variant :
+         promising_limbs(likelihood, evidence, limbs, view(starts[i].fit.pose), eye, search, rng)) {
+      chosen.push_back(candidate_at(skeleton, variant.pose));
     }
   }
   return chosen;
@@ -241,11 +224,10 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::
   // How good a fit can be tells how much the differences between fits mean.
   CoverageLikelihood::Scratch scratch(likelihood);
   const std::vector<double> noise = likelihood.estimate_noise(evidence, view(starts.front().fit.pose), scratch);
-  for (size_t c = 0; c < noise.size(); ++c) {
-    if (noise[c] > 0) evidence.noise[c] = noise[c] * std::pow(evidence.views[c].pixel_unit, 3);
-  }
-  for (Candidate& start : starts)
+  evidence.set_noise(noise);
+  for (Candidate& start : starts) {
     start.fit.energy = likelihood.energy(evidence, Blur::k4, view(start.fit.pose), scratch);
+  }
   const auto log_likelihood = [&](const Candidate& c) {
     return -0.5 * c.fit.cost() + options.facing_bonus * faces_camera(body, camera, view(c.fit.pose));
   };

@@ -4,6 +4,7 @@
 
 #include "silpose/body/test_body.h"
 #include "silpose/render/silhouette.h"
+#include "silpose/track/limbs.h"
 
 namespace silpose {
 namespace {
@@ -52,7 +53,13 @@ TEST_F(InitialisationTest, RanksTheBetterCandidateFirstAndKeepsOneOfEqualOnes) {
   candidates(0, 5) = -0.7;
   candidates(1, 5) = candidates(2, 5) = 0.6;
   const auto starts = start(truth, candidates);
-  ASSERT_GE(starts.size(), 1u);
+  EXPECT_NEAR(starts[0].pose[5] + starts[0].pose[7], truth[5] + truth[7], 0.2);  // the one that bends the right way
+  for (size_t i = 0; i < starts.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {  // the two that are equal are one
+      EXPECT_GE(furthest_apart(landmark_positions(*body_, starts[i].pose), landmark_positions(*body_, starts[j].pose)),
+                0.1);
+    }
+  }
   for (size_t i = 1; i < starts.size(); ++i) EXPECT_LE(starts[i].log_likelihood, starts[i - 1].log_likelihood);
 }
 

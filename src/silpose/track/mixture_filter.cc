@@ -17,9 +17,9 @@ constexpr double kStartAngle = 0.15, kStartMetres = 0.05;  // radians, metres
 constexpr double kStartTurn = 2.0, kStartSpeed = 1.0;      // per second
 // A limb that jumped may be anywhere near where it landed.
 constexpr double kJumpAngle = 0.5, kJumpTurn = 3.0;
+constexpr double kCoastDecay_per_s = 3;  // unseen, a body is taken to slow down
+constexpr FitStage kTrackingStages[] = {{Blur::k8, 4}, {Blur::k4, 3}, {Blur::k2, 3}};
 constexpr FitStage kJumpStages[] = {{Blur::k8, 2}, {Blur::k4, 3}, {Blur::k2, 3}};
-
-std::span<const double> view(const Eigen::VectorXd& pose) { return {pose.data(), static_cast<size_t>(pose.size())}; }
 
 PosePrior prior_of(const GaussianComponent& component) {
   const Eigen::Index D = component.num_dofs();
@@ -38,7 +38,6 @@ struct MixtureFilter::Child {
   Eigen::VectorXd start;  // of the fit
   PoseFit fit;
   double log_weight = 0;  // before this step's evidence
-  bool jumped = false;
 };
 
 MixtureFilter::MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine,
@@ -77,9 +76,8 @@ void MixtureFilter::add(const std::vector<Eigen::VectorXd>& poses) {
   normalise_weights(hypotheses_);
 }
 
-MixtureReport MixtureFilter::step(const CoverageEvidence& evidence, double dt_s) {
+void MixtureFilter::step(const CoverageEvidence& evidence, double dt_s) {
   check(!hypotheses_.empty(), "MixtureFilter: step before start");
-  MixtureReport report;
   const PoseFitOptions fit_options{.rest_weight = options_.rest_weight};
   std::vector<Child> children(hypotheses_.size());
   const auto fit = [&](std::vector<Child>& some, std::span<const FitStage> stages) {
@@ -89,107 +87,73 @@ MixtureReport MixtureFilter::step(const CoverageEvidence& evidence, double dt_s)
         some[i].fit = fit_pose(*fine_, evidence, some[i].prior, some[i].start, stages, fit_options, scratch);
       }
     });
-    report.num_fits += static_cast<int>(some.size());
-    for (const Child& child : some) report.num_iterations += child.fit.num_iterations;
   };
   for (size_t i = 0; i < children.size(); ++i) {
     Child& child = children[i];
     child.component = hypotheses_[i];
-    predict_constant_velocity(child.component, dt_s, acceleration_, kNoiseInterval_s, options_.velocity_decay_per_s);
+    predict_constant_velocity(child.component, dt_s, acceleration_, kNoiseInterval_s);
     child.prior = prior_of(child.component);
     child.start = child.prior.mean;
     child.log_weight = hypotheses_[i].log_weight;
   }
   fit(children, kTrackingStages);
-  std::vector<Child> jumps = candidates(evidence, children, report);
+  std::vector<Child> jumps = jumps_from(evidence, children);
   fit(jumps, kJumpStages);
   for (Child& jump : jumps) children.push_back(std::move(jump));
-  keep_best(std::move(children), report);
+  keep_best(std::move(children));
   ++steps_;
-  return report;
 }
 
 void MixtureFilter::coast(double dt_s) {
   for (GaussianComponent& hypothesis : hypotheses_) {
-    predict_constant_velocity(hypothesis, dt_s, acceleration_, kNoiseInterval_s, options_.velocity_decay_per_s + 3);
+    predict_constant_velocity(hypothesis, dt_s, acceleration_, kNoiseInterval_s, kCoastDecay_per_s);
   }
   ++steps_;
 }
 
-// Other limbs for the best of what was fitted: many are tried by one evaluation with a coarse mesh, few are kept.
-std::vector<MixtureFilter::Child> MixtureFilter::candidates(const CoverageEvidence& evidence,
-                                                            const std::vector<Child>& fitted,
-                                                            MixtureReport& report) const {
-  const BodyModel& body = fine_->body();
+// Other limbs for the best of what was fitted: a limb that jumped is free to be anywhere near where it landed.
+std::vector<MixtureFilter::Child> MixtureFilter::jumps_from(const CoverageEvidence& evidence,
+                                                            const std::vector<Child>& fitted) const {
   std::vector<size_t> order(fitted.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::ranges::stable_sort(order, std::greater<>{},
                            [&](size_t i) { return fitted[i].log_weight - 0.5 * fitted[i].fit.cost(); });
   order.resize(std::min(order.size(), static_cast<size_t>(options_.num_parents)));
 
-  struct Variant : LimbVariant {
-    size_t parent;
-    double energy = 0;
-  };
-  std::vector<Variant> variants;
   const Eigen::Vector3d eye = fine_->cameras().front().centre_in_world();
-  for (const size_t p : order) {
-    Rng rng(options_.seed, steps_, p);
-    for (LimbVariant& variant :
-         limb_variants(body, limbs_, view(fitted[p].fit.pose), eye, options_.num_random_limbs, rng)) {
-      variants.push_back({std::move(variant), p});
-    }
-  }
-  report.num_tried += static_cast<int>(variants.size());
-  parallel_for(variants.size(), 8, [&](size_t begin, size_t end) {
-    CoverageLikelihood::Scratch scratch(*coarse_);
-    for (size_t i = begin; i < end; ++i) {
-      variants[i].energy = coarse_->energy(evidence, Blur::k4, variants[i].pose, scratch);
-    }
-  });
-  std::ranges::stable_sort(variants, {}, &Variant::energy);
-
-  // The best of each parent that differ from it, and from each other, by more than a fit would bridge.
   std::vector<Child> jumps;
-  std::vector<std::vector<std::vector<Eigen::Vector3d>>> known(fitted.size());
-  for (const size_t p : order) known[p].push_back(landmark_positions(body, view(fitted[p].fit.pose)));
-  for (const Variant& variant : variants) {
-    auto& of_parent = known[variant.parent];
-    if (std::ssize(of_parent) > options_.num_fitted) continue;
-    std::vector<Eigen::Vector3d> x = landmark_positions(body, variant.pose);
-    if (std::ranges::any_of(of_parent,
-                            [&](const auto& other) { return furthest_apart(x, other) < options_.novelty; })) {
-      continue;
-    }
-    of_parent.push_back(std::move(x));
-    const Child& parent = fitted[variant.parent];
-    Child child;
-    child.component = parent.component;
-    const Eigen::Index D = child.component.num_dofs();
-    child.start = parent.fit.pose;  // whole turns and all
-    for (const size_t l : variant.limbs) {
-      for (const int d : limbs_[l].dofs) {
-        Eigen::MatrixXd& P = child.component.covariance;
-        for (const Eigen::Index k : {static_cast<Eigen::Index>(d), D + d}) {
-          P.row(k).setZero();
-          P.col(k).setZero();
+  for (const size_t p : order) {
+    const Child& parent = fitted[p];
+    Rng rng(options_.seed, steps_, p);
+    for (const LimbVariant& variant :
+         promising_limbs(*coarse_, evidence, limbs_, view(parent.fit.pose), eye, options_.limbs, rng)) {
+      Child child;
+      child.component = parent.component;
+      const Eigen::Index D = child.component.num_dofs();
+      child.start = parent.fit.pose;  // whole turns and all
+      for (const size_t l : variant.limbs) {
+        for (const int d : limbs_[l].dofs) {
+          Eigen::MatrixXd& P = child.component.covariance;
+          for (const Eigen::Index k : {static_cast<Eigen::Index>(d), D + d}) {
+            P.row(k).setZero();
+            P.col(k).setZero();
+          }
+          child.start[d] = variant.pose[static_cast<size_t>(d)];
+          P(d, d) = kJumpAngle * kJumpAngle;
+          P(D + d, D + d) = kJumpTurn * kJumpTurn;
+          child.component.mean[d] = child.start[d];
+          child.component.mean[D + d] = 0;
         }
-        child.start[d] = variant.pose[static_cast<size_t>(d)];
-        P(d, d) = kJumpAngle * kJumpAngle;
-        P(D + d, D + d) = kJumpTurn * kJumpTurn;
-        child.component.mean[d] = child.start[d];
-        child.component.mean[D + d] = 0;
       }
+      child.prior = prior_of(child.component);
+      child.log_weight = parent.log_weight + options_.jump_log_prior;
+      jumps.push_back(std::move(child));
     }
-    child.prior = prior_of(child.component);
-    child.log_weight = parent.log_weight + options_.jump_log_prior;
-    child.jumped = true;
-    jumps.push_back(std::move(child));
   }
   return jumps;
 }
 
-void MixtureFilter::keep_best(std::vector<Child> children, MixtureReport& report) {
+void MixtureFilter::keep_best(std::vector<Child> children) {
   const BodyModel& body = fine_->body();
   for (Child& child : children) {
     // The evidence by Laplace's method: likelihood and prior at the best pose, times how much of the prior is left.
@@ -203,10 +167,8 @@ void MixtureFilter::keep_best(std::vector<Child> children, MixtureReport& report
     std::vector<Eigen::Vector3d> x = landmark_positions(body, view(child.fit.pose));
     const auto is_near = [&](const auto& other) { return furthest_apart(x, other) < options_.merge_distance; };
     if (std::ranges::any_of(landmarks, is_near)) continue;
-    if (kept.empty()) report.energy = child.fit.energy;
     condition_on_pose(child.component, child.fit.pose, child.fit.information);
     child.component.log_weight = child.log_weight;
-    report.num_jumps_kept += child.jumped ? 1 : 0;
     kept.push_back(std::move(child.component));
     landmarks.push_back(std::move(x));
     if (std::ssize(kept) == options_.num_hypotheses) break;

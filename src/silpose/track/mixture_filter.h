@@ -13,28 +13,20 @@
 
 #include "silpose/filter/gaussian_mixture.h"
 #include "silpose/likelihood/coverage_likelihood.h"
-#include "silpose/track/limbs.h"
+#include "silpose/track/limb_search.h"
 #include "silpose/track/pose_fit.h"
 
 namespace silpose {
 
 struct MixtureOptions {
   int num_hypotheses = 4;
-  int num_parents = 2;         // of new hypotheses, the best
-  int num_random_limbs = 40;   // tried for each parent
-  int num_fitted = 3;          // new hypotheses fitted for each parent, the most promising
-  double acceleration = 1.25;  // times motion/noise.h's acceleration_deviation
-  double rest_weight = 0.2;    // pose_fit.h
-  double velocity_decay_per_s = 0;
+  int num_parents = 2;           // of new hypotheses, the best
+  LimbSearchOptions limbs;       // of new hypotheses, for each parent
+  double acceleration = 1.25;    // times motion/noise.h's acceleration_deviation
+  double rest_weight = 0.2;      // pose_fit.h
   double jump_log_prior = -6;    // log-probability of a hypothesis that jumped
-  double novelty = 0.12;         // metres: new hypotheses have a joint at least as far from their parent
   double merge_distance = 0.05;  // metres: hypotheses whose every joint is nearer are one
   uint64_t seed = 1;
-};
-
-struct MixtureReport {
-  int num_fits = 0, num_iterations = 0, num_tried = 0, num_jumps_kept = 0;
-  double energy = 0;  // of the best hypothesis
 };
 
 class MixtureFilter {
@@ -49,7 +41,8 @@ class MixtureFilter {
   // Adds hypotheses, each as likely as the jump prior says against the best there is: the next step decides.
   void add(const std::vector<Eigen::VectorXd>& poses);
 
-  MixtureReport step(const CoverageEvidence& evidence, double dt_s);
+  // REQUIRES: evidence prepared up to Blur::k8; dt_s >= 0 since the last call.
+  void step(const CoverageEvidence& evidence, double dt_s);
   void coast(double dt_s);
 
   // Best first, weights normalised.
@@ -57,10 +50,9 @@ class MixtureFilter {
 
  private:
   struct Child;
-  std::vector<Child> candidates(const CoverageEvidence& evidence, const std::vector<Child>& fitted,
-                                MixtureReport& report) const;
+  std::vector<Child> jumps_from(const CoverageEvidence& evidence, const std::vector<Child>& fitted) const;
   [[nodiscard]] GaussianComponent component_of(const Eigen::VectorXd& pose, double log_weight) const;
-  void keep_best(std::vector<Child> children, MixtureReport& report);
+  void keep_best(std::vector<Child> children);
 
   std::shared_ptr<const CoverageLikelihood> fine_, coarse_;
   MixtureOptions options_;

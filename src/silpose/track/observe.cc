@@ -1,6 +1,9 @@
 #include "silpose/track/observe.h"
 
+#include <algorithm>
 #include <utility>
+
+#include "silpose/render/silhouette.h"
 
 namespace silpose {
 
@@ -13,6 +16,21 @@ Observation observation_from(Segmentation segmentation) {
                        .area_jumped = segmentation.area_jumped};
   observation.mask = std::move(segmentation.mask);
   return observation;
+}
+
+bool any_has_a_say(std::span<const Observation> observations) {
+  return std::ranges::any_of(observations, [](const Observation& o) {
+    return !o.trust.nothing_found && !o.box.empty() && o.trust.overall >= kLeastTrust;
+  });
+}
+
+double visual_accuracy(const BodyModel& body, std::span<const PinholeCamera> cameras,
+                       std::span<const Observation> observations, std::span<const double> pose) {
+  for (size_t c = 0; c < observations.size(); ++c) {
+    if (observations[c].trust.nothing_found) continue;
+    return intersection_over_union(render_silhouette(body, cameras[c], pose), observations[c].mask);
+  }
+  return 0;
 }
 
 }  // namespace silpose

@@ -1,7 +1,11 @@
 // From what segment found to what the tracker is told.
-// Threads: a function without state.
+// Threads: functions without state.
 #pragma once
 
+#include <span>
+
+#include "silpose/body/body_model.h"
+#include "silpose/geometry/camera.h"
 #include "silpose/segment/segmenter.h"
 #include "silpose/shape/observation.h"
 
@@ -9,5 +13,16 @@ namespace silpose {
 
 // The mask with its bounding box and trust.
 Observation observation_from(Segmentation segmentation);
+
+// A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm.
+inline constexpr double kLeastTrust = 0.3;
+
+// Whether any camera saw something that is trusted enough to track by.
+bool any_has_a_say(std::span<const Observation> observations);
+
+// Intersection over union of a pose's silhouette and the mask of the first camera that found something; 0 without one.
+// Shapes: one observation a camera.
+double visual_accuracy(const BodyModel& body, std::span<const PinholeCamera> cameras,
+                       std::span<const Observation> observations, std::span<const double> pose);
 
 }  // namespace silpose

@@ -16,9 +16,8 @@ constexpr double kSmallestGain = 0.05;    // of the cost: less ends a stage
 struct Point {
   Eigen::VectorXd pose;
   double energy = 0, prior_cost = 0, other_cost = 0;
-  Eigen::VectorXd gradient;    // of half the whole cost
-  Eigen::MatrixXd silhouette;  // hessian of E/2
-  Eigen::MatrixXd hessian;     // of half the whole cost
+  Eigen::VectorXd gradient;  // of half the whole cost
+  Eigen::MatrixXd hessian;   // of half the whole cost
   [[nodiscard]] double cost() const { return energy + prior_cost + other_cost; }
 };
 
@@ -26,16 +25,15 @@ Point evaluate(const CoverageLikelihood& likelihood, const CoverageEvidence& evi
                Blur blur, Eigen::VectorXd pose, double rest_weight, CoverageLikelihood::Scratch& scratch) {
   Point point;
   point.pose = std::move(pose);
-  NormalEquations equations =
-      likelihood.linearise(evidence, blur, {point.pose.data(), static_cast<size_t>(point.pose.size())}, scratch);
+  NormalEquations equations = likelihood.linearise(evidence, blur, view(point.pose), scratch);
   point.energy = equations.energy;
-  point.silhouette = std::move(equations.hessian);
   point.gradient = std::move(equations.gradient);
   const Eigen::VectorXd off = point.pose - prior.mean;
   const Eigen::VectorXd pull = prior.information * off;
   point.prior_cost = off.dot(pull);
   point.gradient += pull;
-  point.hessian = point.silhouette + prior.information;
+  point.hessian = std::move(equations.hessian);
+  point.hessian += prior.information;
   point.other_cost = add_limits(likelihood.body().skeleton, point.pose, rest_weight, point.gradient, point.hessian);
   return point;
 }
@@ -52,6 +50,13 @@ void limit_step(const Skeleton& skeleton, const PoseFitOptions& options, Eigen::
 }
 
 }  // namespace
+
+void clamp_to_limits(const Skeleton& skeleton, Eigen::VectorXd& pose) {
+  for (Eigen::Index d = 0; d < pose.size(); ++d) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    if (!dof.is_translation && !dof.is_periodic) pose[d] = std::clamp(pose[d], dof.lower, dof.upper);
+  }
+}
 
 double add_limits(const Skeleton& skeleton, const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
                   Eigen::MatrixXd& hessian) {
@@ -96,7 +101,6 @@ PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& e
       Eigen::VectorXd step = -damped.ldlt().solve(at.gradient);
       limit_step(skeleton, options, step);
       Point next = evaluate(likelihood, evidence, prior, stage.blur, at.pose + step, options.rest_weight, scratch);
-      ++fit.num_iterations;
       const double gain = at.cost() - next.cost();
       if (gain > 0) {
         at = std::move(next);
@@ -108,14 +112,10 @@ PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& e
     }
   }
   // Exactly inside the limits, whole turns kept: a clamped DOF moves by less than the soft limit's width.
-  for (Eigen::Index d = 0; d < at.pose.size(); ++d) {
-    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-    if (!dof.is_translation && !dof.is_periodic) at.pose[d] = std::clamp(at.pose[d], dof.lower, dof.upper);
-  }
+  clamp_to_limits(skeleton, at.pose);
   fit.pose = std::move(at.pose);
   fit.energy = at.energy;
   fit.prior_cost = at.prior_cost + at.other_cost;
-  fit.hessian = std::move(at.silhouette);
   fit.information = std::move(at.hessian);
   return fit;
 }

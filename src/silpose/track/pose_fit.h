@@ -24,17 +24,11 @@ struct FitStage {
   int max_iterations = 3;
 };
 
-// What a tracked pose needs, and one that starts far off.
-inline constexpr FitStage kTrackingStages[] = {{Blur::k8, 4}, {Blur::k4, 3}, {Blur::k2, 3}};
-inline constexpr FitStage kStartStages[] = {{Blur::k32, 4}, {Blur::k16, 5}, {Blur::k8, 5}, {Blur::k4, 4}};
-
 struct PoseFit {
   Eigen::VectorXd pose;         // [D] within the limits
   double energy = 0;            // E at the last stage's blur
   double prior_cost = 0;        // of the prior, the limits and the pull to rest
-  Eigen::MatrixXd hessian;      // [D, D] of E/2: the information that the silhouette gives
-  Eigen::MatrixXd information;  // [D, D] with the prior's, the limits' and the pull to rest
-  int num_iterations = 0;
+  Eigen::MatrixXd information;  // [D, D] of the silhouette, the prior, the limits and the pull to rest
   [[nodiscard]] double cost() const { return energy + prior_cost; }
 };
 
@@ -44,6 +38,7 @@ struct PoseFitOptions {
   double rest_weight = 0;        // of a pull to the rest pose, in units of (half a range)^-2
 };
 
+// From `start` [D], stage by stage. Errors: throws std::invalid_argument without a stage.
 PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, const PosePrior& prior,
                  const Eigen::VectorXd& start, std::span<const FitStage> stages, const PoseFitOptions& options,
                  CoverageLikelihood::Scratch& scratch);
@@ -52,5 +47,13 @@ PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& e
 // `hessian` [D, D] of half the cost, and returns the cost.
 double add_limits(const Skeleton& skeleton, const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
                   Eigen::MatrixXd& hessian);
+
+// Clamps what is limited, and keeps the whole turns of what is not: unlike Skeleton::clamp, which wraps. [D]
+void clamp_to_limits(const Skeleton& skeleton, Eigen::VectorXd& pose);
+
+// A pose [D] as the likelihoods take it.
+inline std::span<const double> view(const Eigen::VectorXd& pose) {
+  return {pose.data(), static_cast<size_t>(pose.size())};
+}
 
 }  // namespace silpose

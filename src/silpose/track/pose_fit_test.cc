@@ -10,6 +10,9 @@
 namespace silpose {
 namespace {
 
+constexpr FitStage kTrackingStages[] = {{Blur::k8, 4}, {Blur::k4, 3}, {Blur::k2, 3}};
+constexpr FitStage kStartStages[] = {{Blur::k32, 4}, {Blur::k16, 5}, {Blur::k8, 5}, {Blur::k4, 4}};
+
 class PoseFitTest : public ::testing::Test {
  protected:
   CoverageEvidence see(const std::vector<double>& pose) const {
@@ -37,7 +40,6 @@ TEST_F(PoseFitTest, ClimbsToTheTruthFromAfar) {
   EXPECT_NEAR(fit.pose[0], truth[0], 0.02);
   EXPECT_NEAR(fit.pose[1], truth[1], 0.02);
   EXPECT_NEAR(fit.pose[7] + fit.pose[5], truth[7] + truth[5], 0.15);
-  EXPECT_LE(fit.pose.size(), 8);
 }
 
 TEST_F(PoseFitTest, AStrongPriorHolds) {

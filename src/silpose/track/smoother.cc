@@ -125,11 +125,8 @@ class Problem {
         at.hessian[t] = MatrixXd::Zero(D, D);
         if (seen_[t]) {
           CoverageEvidence evidence = likelihood_.prepare(clip_[t].observations, blur, blur);
-          for (size_t c = 0; c < options_.noise.size(); ++c) {
-            evidence.noise[c] = options_.noise[c] * std::pow(evidence.views[c].pixel_unit, 3);
-          }
-          NormalEquations equations =
-              likelihood_.linearise(evidence, blur, {poses[t].data(), static_cast<size_t>(D)}, scratch);
+          evidence.set_noise(options_.noise);
+          NormalEquations equations = likelihood_.linearise(evidence, blur, view(poses[t]), scratch);
           costs[t] = equations.energy;
           at.gradient[t] = std::move(equations.gradient);
           at.hessian[t] = std::move(equations.hessian);
@@ -246,10 +243,7 @@ SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, std::span<const
   matrix.factorise();
   SmoothedPoses result{.poses = {}, .covariances = matrix.marginals(poses.size()), .cost = at.cost};
   for (VectorXd& pose : poses) {
-    for (Eigen::Index d = 0; d < pose.size(); ++d) {
-      const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-      if (!dof.is_translation && !dof.is_periodic) pose[d] = std::clamp(pose[d], dof.lower, dof.upper);
-    }
+    clamp_to_limits(skeleton, pose);
     result.poses.push_back(std::move(pose));
   }
   return result;

@@ -3,16 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "silpose/base/clock.h"
 #include "silpose/base/parallel.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/motion/noise.h"
-#include "silpose/render/silhouette.h"
 #include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
+#include "silpose/track/observe.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/smoother.h"
 #include "silpose/track/tracker.h"
@@ -25,12 +24,6 @@ using Eigen::VectorXd;
 // How many instants are tried as the start, and how far apart they are at least, seconds.
 constexpr size_t kNumStarts = 3;
 constexpr double kStartsApart_s = 0.5;
-
-bool has_a_say(const ClipInstant& instant) {
-  return std::ranges::any_of(instant.observations, [](const Observation& o) {
-    return !o.trust.nothing_found && !o.box.empty() && o.trust.overall >= kLeastTrust;
-  });
-}
 
 // How much a silhouette tells of the pose: limbs that stand out make its outline long for its area.
 double clarity(const ClipInstant& instant) {
@@ -54,7 +47,7 @@ class ClipTracker {
   ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress)
       : options_(options.resolved()), clip_(clip), progress_(progress), possible_(clip.size()), seen_(clip.size()) {
     options_.check();
-    for (size_t t = 0; t < clip.size(); ++t) seen_[t] = has_a_say(clip[t]);
+    for (size_t t = 0; t < clip.size(); ++t) seen_[t] = any_has_a_say(clip[t].observations);
     const auto body = *options_.lod_vertices == 0
                           ? options_.body
                           : std::make_shared<const BodyModel>(level_of_detail(*options_.body, *options_.lod_vertices));
@@ -119,8 +112,8 @@ class ClipTracker {
     for (const size_t t : starts) {
       if (!proceed()) break;
       Rng rng(options_.seed, t);
-      const auto found =
-          initialise(*likelihood_, clip_[t].observations, proposal.propose(clip_[t].observations.front(), 0, rng));
+      const auto found = initialise(*likelihood_, clip_[t].observations,
+                                    proposal.propose(clip_[t].observations.front(), 0, rng), {.seed = options_.seed});
       if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
     }
     return chosen;
@@ -167,8 +160,7 @@ class ClipTracker {
         const CoverageEvidence evidence = evidence_at(first_ + i);
         for (size_t k = 0; k < possible.poses.size(); ++k) {
           const VectorXd& pose = possible.poses[k];
-          possible.energies[k] =
-              likelihood_->energy(evidence, Blur::k4, {pose.data(), static_cast<size_t>(pose.size())}, scratch);
+          possible.energies[k] = likelihood_->energy(evidence, Blur::k4, view(pose), scratch);
         }
       }
     });
@@ -212,20 +204,18 @@ class ClipTracker {
 
   CoverageEvidence evidence_at(size_t t) const {
     CoverageEvidence evidence = likelihood_->prepare(clip_[t].observations, Blur::k4, Blur::k4);
-    for (size_t c = 0; c < noise_.size(); ++c) {
-      evidence.noise[c] = noise_[c] * std::pow(evidence.views[c].pixel_unit, 3);
-    }
+    evidence.set_noise(noise_);
     return evidence;
   }
 
   // What the passes held possible besides the smoothed pose, weighed by how well it fits: where they disagree and the
   // silhouette cannot tell, the spread says so. Adds variances [D] and of landmarks [J + E].
-  void add_disagreement(size_t t, const StepReport& report, CoverageLikelihood::Scratch& scratch,
-                        std::vector<double>& variance, std::vector<Eigen::Vector3d>& landmark_variance) const {
-    if (!seen_[t]) return;
+  void add_disagreement(size_t t, const CoverageEvidence& evidence, const StepReport& report,
+                        CoverageLikelihood::Scratch& scratch, std::vector<double>& variance,
+                        std::vector<Eigen::Vector3d>& landmark_variance) const {
     const BodyModel& body = *options_.body;
     const Possible& possible = possible_[t];
-    const double own = likelihood_->energy(evidence_at(t), Blur::k4, report.pose, scratch);
+    const double own = likelihood_->energy(evidence, Blur::k4, report.pose, scratch);
     const double best = std::min(own, *std::ranges::min_element(possible.energies));
     double sum = std::exp(-0.5 * (own - best));
     std::vector<double> weights;
@@ -243,7 +233,7 @@ class ClipTracker {
         if (body.skeleton.dofs()[d].is_periodic) off = wrap_angle(off);
         variance[d] += weight * off * off;
       }
-      const auto x = landmark_positions(body, {pose.data(), static_cast<size_t>(pose.size())});
+      const auto x = landmark_positions(body, view(pose));
       for (size_t l = 0; l < x.size(); ++l) landmark_variance[l] += weight * (x[l] - landmarks[l]).cwiseAbs2();
     }
   }
@@ -277,9 +267,10 @@ class ClipTracker {
         const VectorXd of_fit = smoothed.covariances[i].diagonal();
         std::vector<double> variance(of_fit.begin(), of_fit.end());
         std::vector<Eigen::Vector3d> of_landmarks = landmark_variances(body, report.pose, smoothed.covariances[i]);
-        add_disagreement(first_ + i, report, scratch, variance, of_landmarks);
         if (seen_[first_ + i]) {
-          const auto from_body = body_error.variance(evidence_at(first_ + i), report.pose, of_stretched);
+          const CoverageEvidence evidence = evidence_at(first_ + i);
+          add_disagreement(first_ + i, evidence, report, scratch, variance, of_landmarks);
+          const auto from_body = body_error.variance(evidence, report.pose, of_stretched);
           for (size_t d = 0; d < variance.size(); ++d) variance[d] += from_body.dofs[d];
           for (size_t l = 0; l < of_landmarks.size(); ++l) of_landmarks[l] += from_body.landmarks[l];
         }
@@ -290,12 +281,7 @@ class ClipTracker {
                        : seen_[first_ + i] ? StepReport::State::kTracked
                                            : StepReport::State::kCoasted;
         if (!seen_[first_ + i]) continue;
-        for (size_t c = 0; c < options_.cameras.size(); ++c) {
-          if (report.trust[c].nothing_found) continue;
-          const Mask drawn = render_silhouette(body, options_.cameras[c], report.pose);
-          report.visual_accuracy = intersection_over_union(drawn, report.observed[c]);
-          break;
-        }
+        report.visual_accuracy = visual_accuracy(body, options_.cameras, clip_[first_ + i].observations, report.pose);
       }
     });
     reports[first_].seconds.start = start_seconds_;

@@ -21,11 +21,6 @@ constexpr int kRankingVertices = 800, kRankingRows = 1;
 // After coasting for longer than this the subject may be anywhere: the next good mask starts over.
 constexpr double kLongestCoast_s = 1.0;
 
-bool any_has_a_say(std::span<const Observation> observations) {
-  return std::any_of(observations.begin(), observations.end(),
-                     [](const Observation& o) { return !o.trust.nothing_found && o.trust.overall >= kLeastTrust; });
-}
-
 // A fit worse than this may be in a wrong basin: the pose is sought anew, first soon, then less and less often.
 constexpr double kGoodAccuracy = 0.92;
 constexpr double kFirstSeek_s = 0.12, kLongestSeek_s = 4;
@@ -62,7 +57,7 @@ struct Tracker::Impl {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
-    return initialise(*likelihoods.fine, observations, candidates);
+    return initialise(*likelihoods.fine, observations, candidates, {.seed = options.seed});
   }
 
   void summarise(std::span<const Observation> observations, StepReport& report) {
@@ -74,12 +69,7 @@ struct Tracker::Impl {
     report.spread = std::move(spread.dofs);
     report.landmark_spread = std::move(spread.landmarks);
     if (report.state != StepReport::State::kCoasted) {
-      for (size_t c = 0; c < observations.size(); ++c) {
-        if (observations[c].trust.nothing_found) continue;
-        const Mask drawn = render_silhouette(*options.body, options.cameras[c], report.pose);
-        report.visual_accuracy = intersection_over_union(drawn, observations[c].mask);
-        break;
-      }
+      report.visual_accuracy = visual_accuracy(*options.body, options.cameras, observations, report.pose);
     }
     last_pose = report.pose;
   }

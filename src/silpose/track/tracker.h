@@ -16,9 +16,6 @@
 
 namespace silpose {
 
-// A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm.
-inline constexpr double kLeastTrust = 0.3;
-
 class Tracker {
  public:
   // Errors: throws std::invalid_argument as TrackerOptions::check().

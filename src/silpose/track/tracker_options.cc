@@ -47,6 +47,8 @@ void TrackerOptions::check() const {
     require(
         !all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.sharpness,
         "motion, sigma, resampling, regenerate and sharpness are of the sampling filters: give particles or layers");
+    require(!all.estimate && !root_fixed && resample_below == 1,
+            "estimate, a fixed root and resample below are of the sampling filters: give particles or layers");
   } else {
     require(*all.num_particles >= 2 && *all.num_particles <= 1'000'000,
             fmt::format("{} particles, not within 2..1000000", *all.num_particles));

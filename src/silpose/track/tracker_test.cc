@@ -182,6 +182,8 @@ TEST(TrackerOptions, AreChecked) {
   EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.num_hypotheses = 2; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.num_hypotheses = 0; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.sigma_deg = 2; }), std::invalid_argument);  // the fitted filter has none
+  EXPECT_THROW(make([](auto& o) { o.estimate = Estimate::kMode; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.root_fixed = true; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.initial_pose = {1, 2, 3}; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.motion = "teleport"; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.resampling = "best"; }), std::invalid_argument);

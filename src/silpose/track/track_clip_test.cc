@@ -1,0 +1,113 @@
+#include "silpose/track/track_clip.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "silpose/body/test_body.h"
+#include "silpose/render/silhouette.h"
+#include "silpose/track/smoother.h"
+
+namespace silpose {
+namespace {
+
+class ClipTest : public ::testing::Test {
+ protected:
+  static std::vector<double> truth(int t) { return {0.01 * t, 0.5, 0, 0, 0, 0.4 * std::sin(0.15 * t), 0, 0}; }
+  ClipInstant instant(int t, bool seen = true) const {
+    ClipInstant instant{.frame_idx = t, .time_ns = t * int64_t{33'333'333}, .observations = {{}}};
+    Observation& observation = instant.observations.front();
+    observation.mask = seen ? render_silhouette(*body_, camera_, truth(t)) : Mask(camera_.width, camera_.height);
+    observation.box = observation.mask.bounding_box();
+    observation.trust.nothing_found = !seen;
+    return instant;
+  }
+  // Nothing is seen from frame `gap_begin` to `gap_end`.
+  std::vector<ClipInstant> clip(int num_frames, int gap_begin, int gap_end) const {
+    std::vector<ClipInstant> instants;
+    for (int t = 0; t < num_frames; ++t) instants.push_back(instant(t, t < gap_begin || t >= gap_end));
+    return instants;
+  }
+  TrackerOptions accurate() const {
+    TrackerOptions options;
+    options.body = body_;
+    options.cameras = {camera_};
+    options.preset = "accurate";
+    options.initial_pose = truth(0);
+    return options;
+  }
+
+  std::shared_ptr<const BodyModel> body_ = std::make_shared<BodyModel>(make_test_body());
+  PinholeCamera camera_ = look_at_camera(320, 240, 300, {0, 1.2, 4.5}, {0, 0.75, 0});
+};
+
+TEST_F(ClipTest, SmoothingBridgesAGapAndKnowsItLess) {
+  const CoverageLikelihood likelihood(body_, {camera_});
+  const auto instants = clip(15, 6, 10);
+  std::vector<bool> seen;
+  std::vector<Eigen::VectorXd> poses;
+  for (int t = 0; t < 15; ++t) {
+    seen.push_back(t < 6 || t >= 10);
+    std::vector<double> pose = truth(t);
+    pose[0] += t % 2 == 0 ? 0.03 : -0.03;  // shaken
+    pose[5] += t % 3 == 0 ? 0.1 : -0.05;
+    if (!seen.back()) pose = truth(5);
+    poses.emplace_back(Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose)));
+  }
+  const SmoothedPoses smoothed = smooth_poses(likelihood, instants, seen, poses, {});
+  ASSERT_EQ(smoothed.poses.size(), 15u);
+  for (int t = 0; t < 15; ++t) {
+    EXPECT_NEAR(smoothed.poses[static_cast<size_t>(t)][0], truth(t)[0], 0.02) << t;
+    EXPECT_NEAR(smoothed.poses[static_cast<size_t>(t)][5], truth(t)[5], 0.12) << t;
+  }
+  EXPECT_GT(smoothed.covariances[8](5, 5), 1.5 * smoothed.covariances[3](5, 5));
+}
+
+// The matrix is the motion prior's alone: an inner frame lies between its neighbours and is known better than the ends.
+TEST_F(ClipTest, WithoutSilhouettesTheMiddleIsKnownBest) {
+  const CoverageLikelihood likelihood(body_, {camera_});
+  const auto instants = clip(7, 0, 7);
+  const std::vector<double> pose = truth(0);
+  const std::vector<Eigen::VectorXd> poses(7, Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose)));
+  const SmoothedPoses smoothed = smooth_poses(likelihood, instants, std::vector<bool>(7, false), poses, {});
+  for (const int t : {0, 6})
+    EXPECT_GT(smoothed.covariances[static_cast<size_t>(t)](5, 5), smoothed.covariances[3](5, 5));
+  EXPECT_NEAR(smoothed.covariances[0](5, 5), smoothed.covariances[6](5, 5), 1e-6 * smoothed.covariances[0](5, 5));
+  EXPECT_NEAR(smoothed.covariances[2](5, 5), smoothed.covariances[4](5, 5), 1e-6 * smoothed.covariances[2](5, 5));
+}
+
+TEST_F(ClipTest, AccurateReportsEveryInstant) {
+  const auto reports = track_clip(accurate(), clip(12, 5, 7));
+  ASSERT_EQ(reports.size(), 12u);
+  for (int t = 0; t < 12; ++t) {
+    const StepReport& report = reports[static_cast<size_t>(t)];
+    EXPECT_EQ(report.frame_idx, t);
+    EXPECT_EQ(report.state, t == 0             ? StepReport::State::kInitialised
+                            : t == 5 || t == 6 ? StepReport::State::kCoasted
+                                               : StepReport::State::kTracked);
+    EXPECT_NEAR(report.pose[0], truth(t)[0], 0.03);
+  }
+}
+
+TEST_F(ClipTest, NothingSeenIsWaiting) {
+  for (const StepReport& report : track_clip(accurate(), clip(3, 0, 3))) {
+    EXPECT_EQ(report.state, StepReport::State::kWaiting);
+    EXPECT_TRUE(report.pose.empty());
+  }
+}
+
+TEST_F(ClipTest, StopsWhenAskedAndTellsGrowingProgress) {
+  size_t last = 0, calls = 0;
+  track_clip(accurate(), clip(6, 0, 0), [&](size_t done, size_t total) {
+    EXPECT_GE(done, last);
+    EXPECT_LE(done, total + 1);
+    last = done;
+    ++calls;
+    return true;
+  });
+  EXPECT_GT(calls, 6u);
+  EXPECT_TRUE(track_clip(accurate(), clip(6, 0, 0), [](size_t, size_t) { return false; }).empty());
+}
+
+}  // namespace
+}  // namespace silpose
