@@ -56,7 +56,7 @@ kill -INT $process 2>/dev/null || true
 wait $process || status=$?
 [[ $status == 130 ]] || fail "exit $status, not 130: $(cat err.txt)"
 [[ -e out/sweeps/results.json ]] || fail "the other experiment is gone"
-first=$(ls out.partial/stopped/runs | head -n 1)
+first=$(find out.partial/stopped/runs -mindepth 1 -printf "%f\n" -quit)
 before=$(stat -c %Y.%i "out.partial/stopped/runs/$first")
 cp -r out.partial kept.partial
 "$silpose" experiment stopped.toml --out kept --resume --quiet >/dev/null || fail "--resume: exit $?"

@@ -21,7 +21,7 @@ done
 [[ $(number one.json frames) == 8 && $(number one.json frames_tracked) == 8 ]] || fail "not every frame was tracked"
 expect_at_least "$(number one.json visual_accuracy mean)" 0.80 "visual accuracy"
 for stage in decode segment propagate likelihood resample write; do number one.json stages_s "$stage" >stage.txt || fail "no $stage"; done
-head -c 60000 one/report.html | grep -q '<video' || fail "the report shows no video"
+grep -q '<video' one/report.html || fail "the report shows no video"
 ! grep -q -E '(src|href)="?https?:' one/report.html || fail "the report needs the network"
 
 "$silpose" evaluate --result one --truth truth --json --quiet >errors.json
