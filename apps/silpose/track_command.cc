@@ -59,7 +59,7 @@ Result<Outcome> run_track(const CLI::App& app, const TrackOptions& options, cons
     if (!written) return written.failure();
   }
   Outcome outcome = track_outcome(told, tracked->interrupted ? directory->path() : directory->final_path());
-  return deliver(*directory, app, chosen_options(tracked->used), std::move(outcome), console);
+  return deliver(*directory, app, chosen_options(options, tracked->used), std::move(outcome), console);
 }
 
 }  // namespace

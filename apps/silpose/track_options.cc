@@ -15,13 +15,18 @@ namespace {
 constexpr const char* kFitted = "Fitted hypotheses (presets default and accurate)";
 constexpr const char* kSampling = "Sampling filters (preset thesis, or with --particles or --layers)";
 
-void add_fitted_options(CLI::App& app, TrackerOptions& tracker) {
+void add_fitted_options(CLI::App& app, TrackOptions& options) {
+  TrackerOptions& tracker = options.tracker;
   app.add_option("--hypotheses", tracker.num_hypotheses, "Poses that are kept possible at a time (4; accurate: 8)")
       ->check(CLI::Range(1, 64))
       ->group(kFitted);
   app.add_flag_function(
          "--smooth,!--no-smooth", [&tracker](int64_t count) { tracker.smooth = count > 0; },
          "Of a recorded clip: track both ways, then fit all frames at once (accurate: on)")
+      ->group(kFitted);
+  app.add_flag_function(
+         "--fit-body,!--no-fit-body", [&options](int64_t count) { options.fit_body = count > 0; },
+         "Fit the subject's bone lengths first; needs several cameras and --smooth (accurate with several cameras: on)")
       ->group(kFitted);
 }
 
@@ -82,7 +87,7 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
   app.add_option("--init", options.init, "First pose: descent, or a poses.csv (its row of the first frame)")
       ->capture_default_str();
   app.add_option("--config", options.config, "Options from a TOML file; the command line wins");
-  add_fitted_options(app, options.tracker);
+  add_fitted_options(app, options);
   add_sampling_options(app, options);
 }
 
@@ -93,11 +98,18 @@ void check_together(const TrackOptions& options) {
                                                     : "--preset thesis";
   if (tracker.preset == "thesis" || tracker.num_particles || tracker.num_layers) {
     if (tracker.num_hypotheses) throw UsageError(fmt::format("--hypotheses: not together with {}", sampler));
+    if (options.fit_body.value_or(false)) throw UsageError(fmt::format("--fit-body: not together with {}", sampler));
     if (tracker.smooth.value_or(false)) throw UsageError(fmt::format("--smooth: not together with {}", sampler));
     return;
   }
   if (const std::optional<std::string> name = sampling_option(options)) {
     throw UsageError(fmt::format("{}: needs --particles, --layers or --preset thesis", *name));
+  }
+  if (options.fit_body.value_or(false)) {
+    if (!*tracker.resolved().smooth) throw UsageError("--fit-body: needs --smooth");
+    if (options.input.videos.size() < 2) {
+      throw UsageError("--fit-body: one camera cannot tell the length of a bone from its depth; needs several");
+    }
   }
   for (const std::string& video : options.input.videos) {
     if (video.starts_with("camera:") && *tracker.resolved().smooth) {
@@ -105,6 +117,12 @@ void check_together(const TrackOptions& options) {
                                    tracker.smooth ? "" : " (--preset accurate smooths; --no-smooth)"));
     }
   }
+}
+
+bool fits_body(const TrackOptions& options) {
+  const TrackerOptions resolved = options.tracker.resolved();
+  return options.fit_body.value_or(options.tracker.preset == "accurate" && resolved.num_hypotheses && *resolved.smooth &&
+                                   options.input.videos.size() > 1);
 }
 
 TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
@@ -138,7 +156,7 @@ Result<std::optional<std::vector<double>>> read_initial_pose(const TrackOptions&
   return std::optional(table->rows.front().values);
 }
 
-std::map<std::string, std::string> chosen_options(const TrackerOptions& used) {
+std::map<std::string, std::string> chosen_options(const TrackOptions& options, const TrackerOptions& used) {
   std::map<std::string, std::string> chosen;
   const auto keep = [&](const char* name, const auto& value) {
     if (value) chosen[name] = fmt::format("{}", *value);
@@ -147,6 +165,7 @@ std::map<std::string, std::string> chosen_options(const TrackerOptions& used) {
   keep("hypotheses", used.num_hypotheses);
   if (used.num_hypotheses) {
     keep("smooth", used.smooth);
+    keep("fit-body", std::optional(fits_body(options)));
     return chosen;
   }
   keep("particles", used.num_particles);

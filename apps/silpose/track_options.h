@@ -23,6 +23,7 @@ struct TrackOptions {
   std::string model = "human", out, config, init = "descent", root = "tracked";
   std::optional<std::string> metric, estimate;
   std::optional<double> resample_below;
+  std::optional<bool> fit_body;
   TrackerOptions tracker;
 };
 
@@ -30,6 +31,9 @@ void add_track_options(CLI::App& app, TrackOptions& options);
 
 // Throws UsageError for options that do not go together, before anything is read.
 void check_together(const TrackOptions& options);
+
+// Whether the subject's bone lengths are fitted: where asked for, and by `accurate` with several cameras.
+bool fits_body(const TrackOptions& options);
 
 // What the tracker is asked for, all but its first pose. Throws UsageError for what it refuses.
 TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
@@ -41,6 +45,6 @@ Result<std::optional<std::vector<double>>> read_initial_pose(const TrackOptions&
                                                              int64_t frame);
 
 // The tracker's options as they came out, by option name, for config.toml.
-std::map<std::string, std::string> chosen_options(const TrackerOptions& used);
+std::map<std::string, std::string> chosen_options(const TrackOptions& options, const TrackerOptions& used);
 
 }  // namespace silpose::app

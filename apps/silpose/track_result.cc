@@ -17,6 +17,13 @@ nlohmann::ordered_json figure(double mean, double std) {
 
 double frames_per_second(const Tracked& tracked) { return static_cast<double>(tracked.num_frames) / tracked.loop_s; }
 
+// How much longer the subject's bones are than the body's, and how sure that is: {"right_shin_length": {mean, std}, ...}
+nlohmann::ordered_json fitted_lengths(const BodyFit& fit) {
+  nlohmann::ordered_json lengths = nlohmann::ordered_json::object();
+  for (size_t s = 0; s < fit.names.size(); ++s) lengths[fit.names[s]] = figure(fit.lengths[s], fit.deviations[s]);
+  return lengths;
+}
+
 }  // namespace
 
 Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder) {
@@ -28,6 +35,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run = run_facts(told.common);
   run["model"] = told.options.model;
   run["body"] = told.writer.body().name;
+  if (tracked.body_fit) run["fitted_lengths_m"] = fitted_lengths(*tracked.body_fit);
   run["frames"] = tracked.num_frames;
   run["frames_tracked"] = summary.frames_tracked;
   run["frames_coasted"] = summary.frames_coasted;
@@ -52,6 +60,9 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   } else {
     outcome.text += fmt::format("overlay: {0}/overlay.mp4\nreport:  {0}/report.html", folder.string());
   }
+  if (tracked.body_fit && !tracked.recording.steps.empty()) {
+    outcome.text += fmt::format("\nbody:    {}/fitted.body, {:.3f} m tall", folder.string(), told.writer.body().height_m);
+  }
   return outcome;
 }
 
@@ -73,7 +84,7 @@ Result<void> write_track_report(const TrackTold& told, const std::filesystem::pa
                   {"Silhouettes from", told.source.background()},
                   {"Camera", told.options.camera.file.empty() ? "assumed" : told.options.camera.file},
                   {"preset", told.options.tracker.preset}};
-  for (const auto& [name, value] : chosen_options(told.tracked.used)) report.facts.emplace_back(name, value);
+  for (const auto& [name, value] : chosen_options(told.options, told.tracked.used)) report.facts.emplace_back(name, value);
   report.facts.emplace_back("Seed", std::to_string(told.common.seed));
   report.facts.emplace_back("Frames a second", fmt::format("{:.2f}", frames_per_second(told.tracked)));
   return write_report(folder / "report.html", report);

@@ -1,5 +1,6 @@
 #include "apps/silpose/track_run.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
@@ -114,6 +115,7 @@ class TrackRun {
     }
     if (clip.empty() || Console::interrupted()) return {};
     const Stopwatch smoothing;
+    if (fits_body(options_) && !fit_body_to(clip)) return {};
     const std::vector<StepReport> reports = track_clip(tracker_options_, clip, [&](size_t done, size_t total) {
       return console_.update("tracking", static_cast<int64_t>(done), static_cast<int64_t>(total));
     });
@@ -125,6 +127,26 @@ class TrackRun {
     }
     tracked_.seconds.smooth = smoothing.seconds() - told_s;
     return draw(reports);
+  }
+
+  // From here on the body has the subject's bone lengths, as the clip tracked online tells them. False: interrupted.
+  bool fit_body_to(std::span<const ClipInstant> clip) {
+    TrackerOptions online = tracker_options_;
+    online.smooth = false;
+    std::vector<std::vector<double>> poses;
+    for (const StepReport& report : track_clip(online, clip, [&](size_t done, size_t total) {
+           return console_.update("tracking the body as given", static_cast<int64_t>(done), static_cast<int64_t>(total));
+         })) {
+      poses.push_back(report.pose);
+    }
+    if (Console::interrupted()) return false;
+    if (std::ranges::all_of(poses, [](const auto& pose) { return pose.empty(); })) return true;
+    const auto total = static_cast<int64_t>(clip.size());
+    tracked_.body_fit = fit_body(tracker_options_.body, tracker_options_.cameras, clip, poses, {},
+                                 [&] { return console_.update("fitting the body", total, total); });
+    tracker_options_.body = tracked_.body_fit->body;
+    writer_.set_fitted_body(tracked_.body_fit->body);
+    return !Console::interrupted();
   }
 
   // The overlay, in a second pass over the pictures.

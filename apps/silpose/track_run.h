@@ -1,8 +1,10 @@
 // The work of `silpose track`: observations in, poses out, masks and overlay written on the way. Frame by frame, or
-// with smoothing in three passes: the clip is segmented, then tracked as a whole, then read again for the overlay.
+// with smoothing in three passes: the clip is segmented, then tracked as a whole (twice where the body is fitted), then
+// read again for the overlay.
 // Pictures are never kept. Threads: the main thread only.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,6 +15,7 @@
 #include "apps/silpose/track_writer.h"
 #include "silpose/base/result.h"
 #include "silpose/recording/track_recording.h"
+#include "silpose/track/body_fit.h"
 
 namespace silpose::app {
 
@@ -29,6 +32,7 @@ struct Tracked {
   TrackRecording recording;  // without steps where smoothing was interrupted
   TrackerOptions used;       // everything filled in
   int64_t num_frames = 0;    // segmented
+  std::optional<BodyFit> body_fit;  // where the body was fitted
   StageSeconds seconds;
   double loop_s = 0;  // from the first frame to the last, all stages
   bool interrupted = false;

@@ -36,10 +36,19 @@ Result<void> TrackWriter::add_picture(ByteImage picture, std::span<const double>
   return overlay_->write(picture);
 }
 
+void TrackWriter::set_fitted_body(std::shared_ptr<const BodyModel> body) {
+  body_ = std::move(body);
+  is_fitted_ = true;
+}
+
 Result<void> TrackWriter::finish(const TrackRecording& recording) {
   if (overlay_) overlay_->close();
   const Result<void> kept = write_cameras(directory_ / "camera.toml", cameras_);
   if (!kept || recording.steps.empty()) return kept;
+  if (is_fitted_) {
+    const Result<void> written = write_body(directory_ / "fitted.body", *body_);
+    if (!written) return written;
+  }
   const Skeleton& skeleton = body_->skeleton;
   const std::vector<std::vector<double>> poses = even_poses(recording);
   const Result<void> files[] = {

@@ -29,6 +29,9 @@ class TrackWriter {
   // The next picture of overlay.mp4, of the first camera, with `pose` [D] drawn on it; empty: nothing is.
   Result<void> add_picture(ByteImage picture, std::span<const double> pose);
 
+  // What is written is of this body from now on; finish() writes it, too, as fitted.body.
+  void set_fitted_body(std::shared_ptr<const BodyModel> body);
+
   // Ends overlay.mp4; writes camera.toml and, where the recording holds anything, poses, poses_normalised, spread and
   // joints as CSV and motion.bvh.
   Result<void> finish(const TrackRecording& recording);
@@ -41,6 +44,7 @@ class TrackWriter {
   std::shared_ptr<const BodyModel> body_;
   std::vector<PinholeCamera> cameras_;
   double fps_;
+  bool is_fitted_ = false;
   std::optional<VideoWriter> overlay_;
 };
 

@@ -40,6 +40,22 @@ grep -q -x 'layers = 1' plain/config.toml || fail "config.toml does not say one 
 "$silpose" track --config plain/config.toml --out again --quiet || fail "--config of a plain filter: exit $?"
 cmp -s plain/poses.csv again/poses.csv || fail "plain filter: other poses when the options come from config.toml"
 
+# Two cameras and a body that is 6 % too short: its bones are fitted.
+"$silpose" synth --out pair --model human:height=1.75 --motion sway --amplitude-deg 20 --frames 4 --size 320x240 --view 30 \
+  --view 120 --seed 3 --quiet
+pair=(track pair/masks_30 pair/masks_120 --segmenter masks --camera pair/camera.toml --camera-name 30 --camera-name 120
+      --preset accurate --model human:height=1.65 --vertices 1000 --hypotheses 2 --quiet --json)
+"$silpose" "${pair[@]}" --out pair_fitted >fitted.json || fail "--fit-body: exit $?"
+"$silpose" "${pair[@]}" --no-fit-body --out pair_given >given.json || fail "--no-fit-body: exit $?"
+[[ -s pair_fitted/fitted.body && ! -e pair_given/fitted.body ]] || fail "fitted.body is not where it should be"
+expect_at_least "$(number fitted.json fitted_lengths_m right_shin_length mean)" 0.01 "longer shin, metres"
+grep -q -x 'fit-body = true' pair_fitted/config.toml || fail "config.toml does not say that the body was fitted"
+grep -q -x 'fit-body = false' pair_given/config.toml || fail "config.toml does not say that the body was not fitted"
+"$silpose" evaluate --result pair_fitted --truth pair --json --quiet >fitted_errors.json
+"$silpose" evaluate --result pair_given --truth pair --json --quiet >given_errors.json
+expect_at_most "$(number fitted_errors.json joint_error_mm mean)" "$(number given_errors.json joint_error_mm mean)" \
+  "joint error with the fitted body, mm"
+
 # Stopped while it smooths: the masks are whole and can be tracked later.
 "$silpose" synth --out long --motion sway --frames 60 --size 160x120 --quiet
 cp -r accurate stopped

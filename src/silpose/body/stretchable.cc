@@ -1,7 +1,10 @@
 #include "silpose/body/stretchable.h"
 
+#include <algorithm>
 #include <string_view>
 #include <utility>
+
+#include "silpose/base/check.h"
 
 namespace silpose {
 namespace {
@@ -34,6 +37,47 @@ BodyModel stretchable(const BodyModel& body, const StretchOptions& options) {
   }
   BodyModel out = body;
   out.skeleton = Skeleton(skeleton.name(), std::move(joints), std::move(dofs));
+  return out;
+}
+
+BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths, const StretchOptions& options) {
+  const Skeleton stretched = stretchable(body, options).skeleton;
+  const std::vector<int> shape = shape_dofs(stretched);
+  check(lengths.size() == shape.size(), "with_lengths: {} lengths for {} bones", lengths.size(), shape.size());
+  const Skeleton& skeleton = body.skeleton;
+  std::vector<Joint> joints(skeleton.joints().begin(), skeleton.joints().end());
+  for (size_t s = 0; s < shape.size(); ++s) {
+    const Dof& dof = stretched.dofs()[static_cast<size_t>(shape[s])];
+    Joint& joint = joints[static_cast<size_t>(dof.joint_idx)];
+    check(joint.offset_in_parent.norm() + lengths[s] > 0, "with_lengths: {} of {} m", dof.name, lengths[s]);
+    joint.offset_in_parent += lengths[s] * dof.axis;
+  }
+  // How far each joint moves in the mesh's own rest pose; its flesh moves with it.
+  std::vector<Eigen::Vector3d> moved(joints.size(), Eigen::Vector3d::Zero());
+  for (size_t j = 0; j < joints.size(); ++j) {
+    if (joints[j].parent_idx < 0) continue;
+    const auto parent = static_cast<size_t>(joints[j].parent_idx);
+    const Eigen::Vector3d longer = joints[j].offset_in_parent - skeleton.joints()[j].offset_in_parent;
+    moved[j] = moved[parent] + body.joint_from_rest[parent].inverse().rotation * longer;
+  }
+  BodyModel out = body;
+  double lowest_before = 1e30, highest_before = -1e30, lowest = 1e30, highest = -1e30;
+  for (size_t v = 0; v < out.rest.vertices.size(); ++v) {
+    Eigen::Vector3d x = out.rest.vertices[v].cast<double>();
+    lowest_before = std::min(lowest_before, x.y()), highest_before = std::max(highest_before, x.y());
+    for (uint32_t i = out.skin.row_start[v]; i < out.skin.row_start[v + 1]; ++i) {
+      x += static_cast<double>(out.skin.weight[i]) * moved[out.skin.joint_idx[i]];
+    }
+    lowest = std::min(lowest, x.y()), highest = std::max(highest, x.y());
+    out.rest.vertices[v] = x.cast<float>();
+  }
+  const Eigen::Vector3d to_floor(0, -lowest, 0);  // the rest mesh stands on it
+  for (Eigen::Vector3f& x : out.rest.vertices) x += to_floor.cast<float>();
+  for (size_t j = 0; j < joints.size(); ++j) {
+    out.joint_from_rest[j] = out.joint_from_rest[j] * Rigid3{Eigen::Matrix3d::Identity(), -(moved[j] + to_floor)};
+  }
+  out.height_m += (highest - lowest) - (highest_before - lowest_before);
+  out.skeleton = Skeleton(skeleton.name(), std::move(joints), {skeleton.dofs().begin(), skeleton.dofs().end()});
   return out;
 }
 

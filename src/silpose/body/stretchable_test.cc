@@ -44,6 +44,44 @@ TEST(Stretchable, ALengthMovesTheJointAlongItsBone) {
               0.02, 1e-9);
 }
 
+TEST(WithLengths, IsTheStretchedBodyMadeAnOrdinaryOne) {
+  const BodyModel stretched = stretchable(human());
+  const std::vector<int> shape = shape_dofs(stretched.skeleton);
+  std::vector<double> lengths(shape.size());
+  for (size_t s = 0; s < lengths.size(); ++s) lengths[s] = 0.01 * (static_cast<double>(s % 3) - 1.2);
+  const BodyModel body = with_lengths(human(), lengths);
+  std::vector<double> pose(human().skeleton.dofs().size(), 0.0);
+  for (size_t d = 6; d < pose.size(); ++d) pose[d] = 0.05 * static_cast<double>(d % 5);
+  human().skeleton.clamp(pose);
+  std::vector<double> long_pose = pose;
+  long_pose.insert(long_pose.end(), lengths.begin(), lengths.end());
+  const auto joints = landmark_positions(body, pose), same_joints = landmark_positions(stretched, long_pose);
+  for (size_t l = 0; l < joints.size(); ++l) EXPECT_LT((joints[l] - same_joints[l]).norm(), 1e-9) << l;
+  const auto skin = skin_vertices(body, pose), same_skin = skin_vertices(stretched, long_pose);
+  for (size_t v = 0; v < skin.size(); v += 53) EXPECT_LT((skin[v] - same_skin[v]).norm(), 0.003) << v;
+
+  std::vector<double> none(shape.size(), 0.0);
+  EXPECT_NEAR(with_lengths(human(), none).height_m, human().height_m, 1e-6);
+  none[static_cast<size_t>(std::ranges::find(shape, *stretched.skeleton.find_dof("right_shin_length")) - shape.begin())] =
+      -1;
+  EXPECT_THROW((void)with_lengths(human(), none), std::invalid_argument);
+  EXPECT_THROW((void)with_lengths(human(), {}), std::invalid_argument);
+}
+
+TEST(WithLengths, LongerShinsMakeATallerBodyThatStandsOnTheFloor) {
+  const BodyModel stretched = stretchable(human());
+  const std::vector<int> shape = shape_dofs(stretched.skeleton);
+  std::vector<double> lengths(shape.size(), 0.0);
+  for (size_t s = 0; s < shape.size(); ++s) {
+    if (stretched.skeleton.dofs()[static_cast<size_t>(shape[s])].name.ends_with("_shin_length")) lengths[s] = 0.03;
+  }
+  const BodyModel body = with_lengths(human(), lengths);
+  EXPECT_NEAR(body.height_m, human().height_m + 0.03, 0.002);
+  float lowest = 1;
+  for (const Eigen::Vector3f& x : body.rest.vertices) lowest = std::min(lowest, x.y());
+  EXPECT_NEAR(lowest, 0, 1e-6);
+}
+
 TEST(StretchCovariance, IsPositiveAndTiesRightToLeft) {
   const Skeleton skeleton = stretchable(human()).skeleton;
   const Eigen::MatrixXd covariance = stretch_covariance(skeleton);

@@ -1,0 +1,217 @@
+#include "silpose/track/body_fit.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "silpose/base/check.h"
+#include "silpose/base/parallel.h"
+#include "silpose/body/stretchable.h"
+#include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/observe.h"
+#include "silpose/track/pose_fit.h"
+
+namespace silpose {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr FitStage kStages[] = {{Blur::k8, 6}, {Blur::k4, 6}};
+constexpr int kRounds = 2;  // how good a fit can be tells how much the silhouettes are worth: the first round finds out
+constexpr double kFirstDamping = 1e-3, kLessDamping = 0.2, kMoreDamping = 8, kMostDamping = 1e4;
+constexpr double kSmallestGain = 1e-3;  // of the cost, relative: less ends a stage
+constexpr double kMaxRotation = 0.35;   // radians a step
+
+// The unknowns: lengths [S] of all instants, and a pose [D] each.
+struct Unknowns {
+  VectorXd lengths;
+  std::vector<VectorXd> poses;
+};
+
+// The problem at some unknowns: a block for lengths, one for each pose, and what ties both.
+struct Linearised {
+  double cost = 0;
+  VectorXd length_gradient;
+  MatrixXd length_hessian;
+  std::vector<VectorXd> gradient;  // [T][D]
+  std::vector<MatrixXd> hessian;   // [T][D, D]
+  std::vector<MatrixXd> mixed;     // [T][S, D]
+};
+
+class Problem {
+ public:
+  Problem(const CoverageLikelihood& likelihood, std::vector<CoverageEvidence> evidence, double rest_weight)
+      : likelihood_(likelihood),
+        evidence_(std::move(evidence)),
+        rest_weight_(rest_weight),
+        information_(stretch_covariance(likelihood.body().skeleton).inverse()) {}
+
+  // Takes each camera's noise to be the median of the instants', as they fit now.
+  void estimate_noise(const Unknowns& at) {
+    std::vector<std::vector<double>> found(likelihood_.cameras().size());
+    CoverageLikelihood::Scratch scratch(likelihood_);
+    for (size_t t = 0; t < at.poses.size(); ++t) {
+      VectorXd pose(at.poses[t].size() + at.lengths.size());
+      pose << at.poses[t], at.lengths;
+      const std::vector<double> noise = likelihood_.estimate_noise(evidence_[t], view(pose), scratch);
+      for (size_t c = 0; c < noise.size(); ++c) {
+        if (noise[c] > 0) found[c].push_back(noise[c]);
+      }
+    }
+    std::vector<double> noise;
+    for (std::vector<double>& of_camera : found) {
+      if (of_camera.empty()) of_camera.push_back(CoverageLikelihood::kExactNoise);
+      const auto middle = of_camera.begin() + std::ssize(of_camera) / 2;
+      std::ranges::nth_element(of_camera, middle);
+      noise.push_back(*middle);
+    }
+    for (CoverageEvidence& one : evidence_) one.set_noise(noise);
+  }
+
+  [[nodiscard]] Linearised linearise(const Unknowns& at, Blur blur) const {
+    const size_t T = at.poses.size();
+    const auto S = at.lengths.size(), D = at.poses.front().size();
+    Linearised out;
+    out.gradient.resize(T), out.hessian.resize(T), out.mixed.resize(T);
+    std::vector<double> costs(T);
+    std::vector<VectorXd> length_gradients(T);
+    std::vector<MatrixXd> length_hessians(T);
+    parallel_for(T, 1, [&](size_t begin, size_t end) {
+      CoverageLikelihood::Scratch scratch(likelihood_);
+      for (size_t t = begin; t < end; ++t) {
+        VectorXd pose(D + S);
+        pose << at.poses[t], at.lengths;
+        NormalEquations equations = likelihood_.linearise(evidence_[t], blur, view(pose), scratch);
+        // A length has no rest to be pulled to, and no limit but its prior.
+        VectorXd gradient = VectorXd::Zero(D + S);
+        MatrixXd hessian = MatrixXd::Zero(D + S, D + S);
+        pose.tail(S).setZero();
+        costs[t] = equations.energy +
+                   add_limits(likelihood_.body().skeleton, pose, rest_weight_, gradient, hessian);
+        out.gradient[t] = equations.gradient.head(D) + gradient.head(D);
+        out.hessian[t] = equations.hessian.topLeftCorner(D, D) + hessian.topLeftCorner(D, D);
+        out.hessian[t].diagonal().array() += 1e-6;
+        out.mixed[t] = equations.hessian.bottomLeftCorner(S, D);
+        length_gradients[t] = equations.gradient.tail(S);
+        length_hessians[t] = equations.hessian.bottomRightCorner(S, S);
+      }
+    });
+    out.length_gradient = information_ * at.lengths;
+    out.length_hessian = information_;
+    out.cost = at.lengths.dot(out.length_gradient);
+    for (size_t t = 0; t < T; ++t) {
+      out.cost += costs[t];
+      out.length_gradient += length_gradients[t];
+      out.length_hessian += length_hessians[t];
+    }
+    return out;
+  }
+
+  // What all instants together say of the lengths, poses eliminated.
+  struct Reduced {
+    MatrixXd hessian;                                // [S, S]
+    VectorXd gradient;                               // [S]
+    std::vector<Eigen::LDLT<MatrixXd>> pose_factor;  // [T]
+  };
+  static Reduced reduce(const Linearised& at, double damping) {
+    Reduced reduced{at.length_hessian, at.length_gradient, {}};
+    reduced.hessian.diagonal() *= 1 + damping;
+    for (size_t t = 0; t < at.hessian.size(); ++t) {
+      MatrixXd damped = at.hessian[t];
+      damped.diagonal() *= 1 + damping;
+      reduced.pose_factor.emplace_back(damped);
+      const MatrixXd solved = reduced.pose_factor.back().solve(at.mixed[t].transpose());  // [D, S]
+      reduced.hessian -= at.mixed[t] * solved;
+      reduced.gradient -= solved.transpose() * at.gradient[t];
+    }
+    return reduced;
+  }
+
+  static Unknowns stepped(const Unknowns& from, const Linearised& at, double damping) {
+    const Reduced reduced = reduce(at, damping);
+    Unknowns to = from;
+    const VectorXd longer = -reduced.hessian.ldlt().solve(reduced.gradient);
+    to.lengths += longer;
+    for (size_t t = 0; t < to.poses.size(); ++t) {
+      VectorXd step = -reduced.pose_factor[t].solve(at.gradient[t] + at.mixed[t].transpose() * longer);
+      const double most = step.cwiseAbs().maxCoeff();
+      if (most > kMaxRotation) step *= kMaxRotation / most;
+      to.poses[t] += step;
+    }
+    return to;
+  }
+
+ private:
+  const CoverageLikelihood& likelihood_;
+  std::vector<CoverageEvidence> evidence_;  // [T]
+  double rest_weight_;
+  MatrixXd information_;
+};
+
+}  // namespace
+
+BodyFit fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector<PinholeCamera>& cameras,
+                 std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
+                 const BodyFitOptions& options, const std::function<bool()>& proceed) {
+  check(poses.size() == clip.size(), "fit_body: {} poses of {} instants", poses.size(), clip.size());
+  std::vector<size_t> usable;
+  for (size_t t = 0; t < clip.size(); ++t) {
+    if (!poses[t].empty() && any_has_a_say(clip[t].observations)) usable.push_back(t);
+  }
+  check(!usable.empty(), "fit_body: no instant has a pose");
+
+  const auto stretched =
+      std::make_shared<const BodyModel>(stretchable(level_of_detail(*body, options.num_vertices)));
+  const CoverageLikelihood likelihood(stretched, cameras);
+  const std::vector<int> shape = shape_dofs(stretched->skeleton);
+  const auto S = std::ssize(shape);
+  Unknowns at{VectorXd::Zero(S), {}};
+  std::vector<CoverageEvidence> evidence;
+  const size_t count = std::min(options.num_instants, usable.size());
+  for (size_t i = 0; i < count; ++i) {
+    const size_t t = usable[(2 * i + 1) * usable.size() / (2 * count)];
+    at.poses.emplace_back(Eigen::Map<const VectorXd>(poses[t].data(), std::ssize(poses[t])));
+    evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k2));
+  }
+  const auto proceeds = [&] { return !proceed || proceed(); };
+  Problem problem(likelihood, std::move(evidence), options.rest_weight);
+  Linearised linearised;
+  for (int round = 0; round < kRounds; ++round) {
+    problem.estimate_noise(at);
+    for (const FitStage& stage : kStages) {
+      linearised = problem.linearise(at, stage.blur);
+      double damping = kFirstDamping;
+      for (int i = 0; i < stage.max_iterations && damping < kMostDamping && proceeds(); ++i) {
+        Unknowns next = Problem::stepped(at, linearised, damping);
+        Linearised there = problem.linearise(next, stage.blur);
+        const double gain = linearised.cost - there.cost;
+        if (gain > 0) {
+          at = std::move(next);
+          linearised = std::move(there);
+          damping *= kLessDamping;
+        } else {
+          damping *= kMoreDamping;
+        }
+        if (std::abs(gain) < kSmallestGain * linearised.cost) break;
+      }
+    }
+  }
+  BodyFit fit;
+  fit.lengths.assign(at.lengths.begin(), at.lengths.end());
+  const MatrixXd covariance = Problem::reduce(linearised, 0).hessian.inverse();
+  for (Eigen::Index s = 0; s < S; ++s) fit.deviations.push_back(std::sqrt(std::max(covariance(s, s), 0.0)));
+  for (const int d : shape) fit.names.push_back(stretched->skeleton.dofs()[static_cast<size_t>(d)].name);
+  BodyModel fitted = with_lengths(*body, fit.lengths);
+  fitted.name += ",fitted";
+  for (size_t s = 0; s < fit.names.size(); ++s) {
+    fitted.facts[fit.names[s]] = fmt::format("{:+.4f} m", fit.lengths[s]);
+  }
+  fit.body = std::make_shared<const BodyModel>(std::move(fitted));
+  return fit;
+}
+
+}  // namespace silpose

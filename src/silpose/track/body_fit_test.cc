@@ -1,0 +1,70 @@
+#include "silpose/track/body_fit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "silpose/base/rng.h"
+#include "silpose/body/stretchable.h"
+#include "silpose/body/test_body.h"
+#include "silpose/render/silhouette.h"
+
+namespace silpose {
+namespace {
+
+// The tube with both of its bones of another length, seen by two cameras, its poses known roughly.
+class BodyFitTest : public ::testing::Test {
+ protected:
+  BodyFitTest() {
+    for (int t = 0; t < 6; ++t) {
+      ClipInstant instant{.frame_idx = t, .time_ns = t * int64_t{33'333'333}, .observations = {}};
+      std::vector<double> pose = {0.02 * t, 0.52, 0, 0.2 * t, 0.1 * t, 0.05 * t, 0.3, -0.08 * t};
+      for (const PinholeCamera& camera : cameras_) {
+        Observation observation;
+        observation.mask = render_silhouette(subject_, camera, pose);
+        observation.box = observation.mask.bounding_box();
+        instant.observations.push_back(std::move(observation));
+      }
+      clip_.push_back(std::move(instant));
+      Rng rng(1, static_cast<uint64_t>(t), 0);
+      for (double& value : pose) value += 0.03 * rng.normal();
+      poses_.push_back(std::move(pose));
+    }
+  }
+  const std::vector<double> longer_ = {0.01, -0.03};
+  std::shared_ptr<const BodyModel> body_ = std::make_shared<BodyModel>(make_test_body());
+  BodyModel subject_ = with_lengths(*body_, longer_);
+  std::vector<PinholeCamera> cameras_ = {look_at_camera(320, 240, 300, {0, 1.2, 4.5}, {0, 0.75, 0}),
+                                         look_at_camera(320, 240, 300, {4.5, 1.2, 0}, {0, 0.75, 0})};
+  std::vector<ClipInstant> clip_;
+  std::vector<std::vector<double>> poses_;
+};
+
+TEST_F(BodyFitTest, FindsTheLengthsThatTwoCamerasShow) {
+  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_);
+  ASSERT_EQ(fit.lengths.size(), 2u);
+  for (size_t s = 0; s < 2; ++s) {
+    EXPECT_NEAR(fit.lengths[s], longer_[s], 0.01) << s;
+    EXPECT_GT(fit.deviations[s], 0) << s;
+    EXPECT_LT(fit.deviations[s], 0.01) << s;
+  }
+  EXPECT_NEAR(fit.body->height_m, subject_.height_m, 0.01);
+}
+
+TEST_F(BodyFitTest, IsSureOfLessWhereLessIsSeen) {
+  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_);
+  const BodyFit of_one = fit_body(body_, cameras_, clip_, poses_, {.num_instants = 1});
+  for (size_t s = 0; s < 2; ++s) EXPECT_GT(of_one.deviations[s], fit.deviations[s]) << s;
+}
+
+TEST_F(BodyFitTest, LeavesOutWhatHasNoPoseAndRefusesNone) {
+  for (size_t t = 1; t < poses_.size(); ++t) poses_[t].clear();
+  EXPECT_NO_THROW((void)fit_body(body_, cameras_, clip_, poses_));
+  poses_[0].clear();
+  EXPECT_THROW((void)fit_body(body_, cameras_, clip_, poses_), std::invalid_argument);
+  poses_.pop_back();
+  EXPECT_THROW((void)fit_body(body_, cameras_, clip_, poses_), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace silpose
