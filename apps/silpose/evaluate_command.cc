@@ -6,6 +6,7 @@
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
+#include "apps/silpose/track_writer.h"
 #include "silpose/evaluate/evaluation.h"
 
 namespace silpose::app {
@@ -16,8 +17,9 @@ struct EvaluateCommandOptions {
   EvaluateOptions evaluation;
 };
 
-// The body that a result was made with, as its run.json says.
+// The body that a result was made with: the one fitted to its clip, or what its run.json says.
 std::string model_of(const std::filesystem::path& directory) {
+  if (const auto fitted = directory / kFittedBodyFile; std::filesystem::exists(fitted)) return fitted.string();
   std::ifstream file(directory / "run.json");
   const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
   if (!run.is_object() || !run.contains("model") || !run["model"].is_string()) return "human";
@@ -64,7 +66,7 @@ Command add_evaluate(CLI::App& program, const CommonOptions&) {
   app->add_option("--truth", options->truth, "Directory of a truth")->required();
   app->add_option("--start", options->evaluation.start_s, "Seconds: only what is not before")->check(within(-1e6, 1e6));
   app->add_option("--end", options->evaluation.end_s, "Seconds: only what is before")->check(within(-1e6, 1e6));
-  app->add_option("--model", options->model, "The body of the result; default: as its run.json says")
+  app->add_option("--model", options->model, "The body of the result; default: its own")
       ->check(is_model());
   return {app, [options](Console& console) { return run_evaluate(*options, console); }};
 }

@@ -61,7 +61,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
     outcome.text += fmt::format("overlay: {0}/overlay.mp4\nreport:  {0}/report.html", folder.string());
   }
   if (tracked.body_fit && !tracked.recording.steps.empty()) {
-    outcome.text += fmt::format("\nbody:    {}/fitted.body, {:.3f} m tall", folder.string(), told.writer.body().height_m);
+    outcome.text += fmt::format("\nbody:    {}/{}, {:.3f} m tall", folder.string(), kFittedBodyFile, told.writer.body().height_m);
   }
   return outcome;
 }

@@ -46,7 +46,7 @@ Result<void> TrackWriter::finish(const TrackRecording& recording) {
   const Result<void> kept = write_cameras(directory_ / "camera.toml", cameras_);
   if (!kept || recording.steps.empty()) return kept;
   if (is_fitted_) {
-    const Result<void> written = write_body(directory_ / "fitted.body", *body_);
+    const Result<void> written = write_body(directory_ / kFittedBodyFile, *body_);
     if (!written) return written;
   }
   const Skeleton& skeleton = body_->skeleton;

@@ -18,6 +18,9 @@
 
 namespace silpose::app {
 
+// The body whose bones were fitted to a clip, in its result directory.
+inline constexpr const char* kFittedBodyFile = "fitted.body";
+
 class TrackWriter {
  public:
   TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
@@ -29,7 +32,7 @@ class TrackWriter {
   // The next picture of overlay.mp4, of the first camera, with `pose` [D] drawn on it; empty: nothing is.
   Result<void> add_picture(ByteImage picture, std::span<const double> pose);
 
-  // What is written is of this body from now on; finish() writes it, too, as fitted.body.
+  // What is written is of this body from now on; finish() writes it, too, as kFittedBodyFile.
   void set_fitted_body(std::shared_ptr<const BodyModel> body);
 
   // Ends overlay.mp4; writes camera.toml and, where the recording holds anything, poses, poses_normalised, spread and

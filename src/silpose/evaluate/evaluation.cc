@@ -56,6 +56,11 @@ struct Side {
   std::map<int64_t, double> times;  // of every frame with a pose or joints
 };
 
+// Pictures of two cameras are not compared. A side that does not name its camera is taken to mean the other's.
+bool see_the_same(const Recorded& result, const Recorded& truth) {
+  return result.cameras.empty() || truth.cameras.empty() || result.cameras[0].name == truth.cameras[0].name;
+}
+
 void add_pose_errors(const Skeleton& skeleton, std::span<const double> pose, std::span<const double> truth,
                      FrameFigures& figures) {
   figures[kPoseNpsu] = pose_error_npsu(skeleton, pose, truth);
@@ -112,7 +117,7 @@ Result<void> add_mask_figures(const Recorded& result, const Recorded& truth, con
     }
     figures[kVisualAccuracy] = intersection_over_union(render_silhouette(body, camera, pose->values), *true_mask);
   }
-  if (result_file != result.mask_files.end()) {
+  if (result_file != result.mask_files.end() && see_the_same(result, truth)) {
     const auto mask = read_mask(result_file->second);
     if (!mask) return mask.failure();
     if (mask->width() != true_mask->width() || mask->height() != true_mask->height()) {
@@ -175,6 +180,7 @@ Result<std::vector<FrameFigures>> frame_figures(const Recorded& result, const Re
       const auto joints = sides.result.joints.find(frame), true_joints = sides.truth.joints.find(frame);
       if (joints != sides.result.joints.end() && true_joints != sides.truth.joints.end()) {
         add_joint_errors(joints->second, true_joints->second, figures[i]);
+        if (!see_the_same(result, truth)) figures[i][kJointPx].reset();
       }
       outcomes[i] = add_mask_figures(result, truth, body, frame, has_pose ? pose->second : nullptr, figures[i]);
     }

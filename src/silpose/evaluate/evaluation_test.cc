@@ -118,6 +118,16 @@ TEST(Evaluate, JointErrorsByHand) {
   EXPECT_FALSE(evaluation.find("pose_error_deg").has_value());
 }
 
+TEST(Evaluate, PicturesOfTwoCamerasAreNotCompared) {
+  Recorded result, truth;
+  truth.joints = JointTable{.rows = {joint(0, "left_hand", {0, 1, 1}, {100, 200})}};
+  result.joints = truth.joints;
+  truth.cameras = result.cameras = {look_at_camera(64, 96, 150, {0, 0.75, 3}, {0, 0.75, 0})};
+  EXPECT_TRUE(evaluate(result, truth, body()).value().find("joint_error_px").has_value());
+  result.cameras[0].name = "another";
+  EXPECT_FALSE(evaluate(result, truth, body()).value().find("joint_error_px").has_value());
+}
+
 TEST(Evaluate, WithoutAHipThereIsNoRootError) {
   Recorded result, truth;
   truth.joints = JointTable{.rows = {joint(0, "left_thigh", {0, 1, 0}), joint(0, "left_hand", {0, 1, 1})}};
