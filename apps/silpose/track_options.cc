@@ -23,6 +23,10 @@ void add_fitted_options(CLI::App& app, TrackerOptions& tracker) {
          "--smooth,!--no-smooth", [&tracker](int64_t count) { tracker.smooth = count > 0; },
          "Of a recorded clip: track both ways, then fit all frames at once (accurate: on)")
       ->group(kFitted);
+  app.add_flag_function(
+         "--floor,!--no-floor", [&tracker](int64_t count) { tracker.floor = count > 0; },
+         "The floor is y = 0: nothing lies below; smoothed, what stands does not slide (on with --camera)")
+      ->group(kFitted);
 }
 
 void add_sampling_options(CLI::App& app, TrackOptions& options) {
@@ -94,6 +98,7 @@ void check_together(const TrackOptions& options) {
   if (tracker.preset == "thesis" || tracker.num_particles || tracker.num_layers) {
     if (tracker.num_hypotheses) throw UsageError(fmt::format("--hypotheses: not together with {}", sampler));
     if (tracker.smooth.value_or(false)) throw UsageError(fmt::format("--smooth: not together with {}", sampler));
+    if (tracker.floor.value_or(false)) throw UsageError(fmt::format("--floor: not together with {}", sampler));
     return;
   }
   if (const std::optional<std::string> name = sampling_option(options)) {
@@ -113,6 +118,8 @@ TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<cons
   tracker.body = std::move(body);
   tracker.cameras = std::move(cameras);
   tracker.seed = seed;
+  // How high an assumed camera stands is a guess.
+  if (!tracker.floor && options.camera.file.empty()) tracker.floor = false;
   tracker.root_fixed = options.root == "fixed";
   tracker.resample_below = options.resample_below.value_or(tracker.resample_below);
   if (options.estimate == "mean") tracker.estimate = Estimate::kMean;
@@ -147,6 +154,7 @@ std::map<std::string, std::string> chosen_options(const TrackerOptions& used) {
   keep("hypotheses", used.num_hypotheses);
   if (used.num_hypotheses) {
     keep("smooth", used.smooth);
+    keep("floor", used.floor);
     return chosen;
   }
   keep("particles", used.num_particles);
