@@ -28,6 +28,10 @@ void add_fitted_options(CLI::App& app, TrackOptions& options) {
          "--fit-body,!--no-fit-body", [&options](int64_t count) { options.fit_body = count > 0; },
          "Fit the subject's bone lengths first; needs several cameras and --smooth (accurate with several cameras: on)")
       ->group(kFitted);
+  app.add_flag_function(
+         "--floor,!--no-floor", [&tracker](int64_t count) { tracker.floor = count > 0; },
+         "The floor is y = 0: nothing lies below; smoothed, what stands does not slide (on with --camera)")
+      ->group(kFitted);
 }
 
 void add_sampling_options(CLI::App& app, TrackOptions& options) {
@@ -100,6 +104,7 @@ void check_together(const TrackOptions& options) {
     if (tracker.num_hypotheses) throw UsageError(fmt::format("--hypotheses: not together with {}", sampler));
     if (options.fit_body.value_or(false)) throw UsageError(fmt::format("--fit-body: not together with {}", sampler));
     if (tracker.smooth.value_or(false)) throw UsageError(fmt::format("--smooth: not together with {}", sampler));
+    if (tracker.floor.value_or(false)) throw UsageError(fmt::format("--floor: not together with {}", sampler));
     return;
   }
   if (const std::optional<std::string> name = sampling_option(options)) {
@@ -131,6 +136,8 @@ TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<cons
   tracker.body = std::move(body);
   tracker.cameras = std::move(cameras);
   tracker.seed = seed;
+  // How high an assumed camera stands is a guess.
+  if (!tracker.floor && options.camera.file.empty()) tracker.floor = false;
   tracker.root_fixed = options.root == "fixed";
   tracker.resample_below = options.resample_below.value_or(tracker.resample_below);
   if (options.estimate == "mean") tracker.estimate = Estimate::kMean;
@@ -166,6 +173,7 @@ std::map<std::string, std::string> chosen_options(const TrackOptions& options, c
   if (used.num_hypotheses) {
     keep("smooth", used.smooth);
     keep("fit-body", std::optional(fits_body(options)));
+    keep("floor", used.floor);
     return chosen;
   }
   keep("particles", used.num_particles);

@@ -142,7 +142,8 @@ class TrackRun {
     if (Console::interrupted()) return false;
     if (std::ranges::all_of(poses, [](const auto& pose) { return pose.empty(); })) return true;
     const auto total = static_cast<int64_t>(clip.size());
-    tracked_.body_fit = fit_body(tracker_options_.body, tracker_options_.cameras, clip, poses, {},
+    tracked_.body_fit = fit_body(tracker_options_.body, tracker_options_.cameras, clip, poses,
+                                 {.floor = *tracked_.used.floor},
                                  [&] { return console_.update("fitting the body", total, total); });
     tracker_options_.body = tracked_.body_fit->body;
     writer_.set_fitted_body(tracked_.body_fit->body);

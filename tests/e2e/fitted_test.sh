@@ -18,7 +18,7 @@ done
 expect_at_least "$(number accurate.json visual_accuracy mean)" 0.97 "visual accuracy, accurate"
 "$silpose" evaluate --result accurate --truth truth --json --quiet >errors.json
 expect_at_most "$(number errors.json joint_error_root_mm mean)" 60 "joint error, accurate, root aligned, mm"
-for line in "preset = 'accurate'" 'smooth = true' 'hypotheses = [0-9]*' 'vertices = 0'; do
+for line in "preset = 'accurate'" 'smooth = true' 'floor = true' 'hypotheses = [0-9]*' 'vertices = 0'; do
   grep -q -x "$line" accurate/config.toml || fail "config.toml does not say $line"
 done
 ! grep -q -E '^(particles|layers|metric|resample-below|sharpness)' accurate/config.toml ||
@@ -32,9 +32,12 @@ done
 expect_at_least "$(number two.json visual_accuracy mean)" 0.9 "visual accuracy, two hypotheses"
 grep -q -x 'hypotheses = 2' two/config.toml || fail "config.toml does not say two hypotheses"
 awk -F, 'NR > 1 && ($NF < 1 || $NF > 2.0001) { exit 1 }' two/poses.csv || fail "effective sample size is not within 1 and 2"
-"$silpose" "${track[@]}" --preset accurate --no-smooth --hypotheses 1 --vertices 1500 --end 0.04 --out one >one.json ||
-  fail "--no-smooth: exit $?"
+"$silpose" "${track[@]}" --preset accurate --no-smooth --no-floor --hypotheses 1 --vertices 1500 --end 0.04 --out one >one.json ||
+  fail "--no-smooth --no-floor: exit $?"
 grep -q -x 'smooth = false' one/config.toml || fail "config.toml does not say that nothing was smoothed"
+grep -q -x 'floor = false' one/config.toml || fail "config.toml does not say that there is no floor"
+"$silpose" track truth/masks --segmenter masks --end 0.04 --out assumed --quiet || fail "an assumed camera: exit $?"
+grep -q -x 'floor = false' assumed/config.toml || fail "an assumed camera has a floor"
 "$silpose" "${track[@]}" --particles 200 --layers 1 --end 0.1 --out plain >plain.json || fail "plain filter: exit $?"
 grep -q -x 'layers = 1' plain/config.toml || fail "config.toml does not say one layer"
 "$silpose" track --config plain/config.toml --out again --quiet || fail "--config of a plain filter: exit $?"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace silpose {
 namespace {
@@ -32,7 +33,58 @@ Skeleton make_skeleton() {
   return Skeleton("tube", std::move(joints), std::move(dofs));
 }
 
+constexpr uint32_t kBallRings = 7, kBallSides = 16;
+constexpr double kBallRadius = 0.2, kBallsApart = 1;
+
+void add_ball(const Eigen::Vector3d& centre, Mesh& mesh) {
+  const auto first = static_cast<uint32_t>(mesh.vertices.size());
+  const auto add_vertex = [&](double polar, double around) {
+    const Eigen::Vector3d towards(std::sin(polar) * std::sin(around), std::cos(polar),
+                                  std::sin(polar) * std::cos(around));
+    mesh.vertices.emplace_back((centre + kBallRadius * towards).cast<float>());
+  };
+  for (uint32_t i = 1; i <= kBallRings; ++i) {
+    for (uint32_t k = 0; k < kBallSides; ++k) add_vertex(kPi * i / (kBallRings + 1), 2 * kPi * k / kBallSides);
+  }
+  add_vertex(0, 0);
+  add_vertex(kPi, 0);
+  const uint32_t top = first + kBallRings * kBallSides, last = (kBallRings - 1) * kBallSides;
+  for (uint32_t k = 0; k < kBallSides; ++k) {
+    const uint32_t a = first + k, b = first + (k + 1) % kBallSides;
+    mesh.faces.push_back({top, a, b});
+    mesh.faces.push_back({top + 1, b + last, a + last});
+    for (uint32_t ring = 0; ring < last; ring += kBallSides) {
+      mesh.faces.push_back({a + ring, a + ring + kBallSides, b + ring});
+      mesh.faces.push_back({b + ring, a + ring + kBallSides, b + ring + kBallSides});
+    }
+  }
+}
+
 }  // namespace
+
+BodyModel make_ball_body() {
+  const Eigen::Vector3d lift(0, kBallRadius, 0), across(kBallsApart, 0, 0);
+  BodyModel body{
+      .name = "balls",
+      .skeleton = Skeleton(
+          "balls",
+          {{.name = "root", .parent_idx = -1, .offset_in_parent = lift, .dof_indices = {0, 1}},
+           {.name = "tip", .parent_idx = 0, .offset_in_parent = across, .dof_indices = {2}}},
+          {{.name = "root_ty", .joint_idx = 0, .is_translation = true, .axis = {0, 1, 0}, .lower = -1, .upper = 1},
+           {.name = "root_rz", .joint_idx = 0, .axis = {0, 0, 1}, .lower = -1, .upper = 1},
+           {.name = "tip_tx", .joint_idx = 1, .is_translation = true, .axis = {1, 0, 0}, .lower = -1, .upper = 1}}),
+      .joint_from_rest = {{Eigen::Matrix3d::Identity(), -lift}, {Eigen::Matrix3d::Identity(), -lift - across}}};
+  add_ball(lift, body.rest);
+  const size_t of_root = body.rest.vertices.size();
+  add_ball(lift + across, body.rest);
+  for (size_t v = 0; v < body.rest.vertices.size(); ++v) {
+    body.skin.row_start.push_back(static_cast<uint32_t>(v));
+    body.skin.joint_idx.push_back(v < of_root ? 0 : 1);
+    body.skin.weight.push_back(1);
+  }
+  body.skin.row_start.push_back(static_cast<uint32_t>(body.rest.vertices.size()));
+  return body;
+}
 
 BodyModel make_test_body() {
   constexpr std::array<double, 9> kRings = {0, 0.3, 0.6, 0.7, 0.8, 1.0, 1.1, 1.2, kTop};

@@ -11,4 +11,9 @@ namespace silpose {
 // root_tx root_ty root_tz root_ry (periodic), middle_rx middle_rz, tip_rx tip_rz. End point: tip_end (y 1.5).
 [[nodiscard]] BodyModel make_test_body();
 
+// Two balls of radius 0.2 m side by side on the floor, 1 m apart in the zero pose, which is also the rest pose; 224
+// facets each. Joints, in the middle of a ball each: root (x 0, y 0.2), tip (x 1, y 0.2). 3 DOF: root_ty, root_rz,
+// tip_tx.
+[[nodiscard]] BodyModel make_ball_body();
+
 }  // namespace silpose

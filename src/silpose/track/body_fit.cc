@@ -12,6 +12,7 @@
 #include "silpose/body/stretchable.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/track/observe.h"
+#include "silpose/track/plausibility.h"
 #include "silpose/track/pose_fit.h"
 
 namespace silpose {
@@ -44,8 +45,10 @@ struct Linearised {
 
 class Problem {
  public:
-  Problem(const CoverageLikelihood& likelihood, std::vector<CoverageEvidence> evidence, double rest_weight)
+  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+          std::vector<CoverageEvidence> evidence, double rest_weight)
       : likelihood_(likelihood),
+        plausibility_(plausibility),
         evidence_(std::move(evidence)),
         rest_weight_(rest_weight),
         information_(stretch_covariance(likelihood.body().skeleton).inverse()) {}
@@ -86,14 +89,10 @@ class Problem {
         VectorXd pose(D + S);
         pose << at.poses[t], at.lengths;
         NormalEquations equations = likelihood_.linearise(evidence_[t], blur, view(pose), scratch);
-        // A length has no rest to be pulled to, and no limit but its prior.
-        VectorXd gradient = VectorXd::Zero(D + S);
-        MatrixXd hessian = MatrixXd::Zero(D + S, D + S);
-        pose.tail(S).setZero();
-        costs[t] = equations.energy +
-                   add_limits(likelihood_.body().skeleton, pose, rest_weight_, gradient, hessian);
-        out.gradient[t] = equations.gradient.head(D) + gradient.head(D);
-        out.hessian[t] = equations.hessian.topLeftCorner(D, D) + hessian.topLeftCorner(D, D);
+        costs[t] =
+            equations.energy + plausibility_.add(pose, rest_weight_, equations.gradient, equations.hessian);
+        out.gradient[t] = equations.gradient.head(D);
+        out.hessian[t] = equations.hessian.topLeftCorner(D, D);
         out.hessian[t].diagonal().array() += 1e-6;
         out.mixed[t] = equations.hessian.bottomLeftCorner(S, D);
         length_gradients[t] = equations.gradient.tail(S);
@@ -147,6 +146,7 @@ class Problem {
 
  private:
   const CoverageLikelihood& likelihood_;
+  const Plausibility& plausibility_;
   std::vector<CoverageEvidence> evidence_;  // [T]
   double rest_weight_;
   MatrixXd information_;
@@ -178,7 +178,8 @@ BodyFit fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector
     evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k2));
   }
   const auto proceeds = [&] { return !proceed || proceed(); };
-  Problem problem(likelihood, std::move(evidence), options.rest_weight);
+  const Plausibility plausibility(stretched, options.floor);
+  Problem problem(likelihood, plausibility, std::move(evidence), options.rest_weight);
   Linearised linearised;
   for (int round = 0; round < kRounds; ++round) {
     problem.estimate_noise(at);

@@ -28,9 +28,10 @@ std::vector<Eigen::VectorXd> poses_of(std::span<const StartingPose> starts) {
 }  // namespace
 
 FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
-                           std::shared_ptr<const CoverageLikelihood> coarse)
+                           std::shared_ptr<const CoverageLikelihood> coarse,
+                           std::shared_ptr<const Plausibility> plausibility)
     : fine_(fine),
-      mixture_(std::move(fine), coarse, mixture_options(options)),
+      mixture_(std::move(fine), coarse, std::move(plausibility), mixture_options(options)),
       body_error_(coarse->body(), options.cameras) {}
 
 void FittedFilter::start(std::span<const StartingPose> starts) {

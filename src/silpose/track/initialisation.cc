@@ -86,13 +86,14 @@ struct Candidate {
   PoseFit fit;
 };
 
-void fit_all(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, std::span<const FitStage> stages,
-             std::vector<Candidate>& candidates) {
+void fit_all(const CoverageLikelihood& likelihood, const Plausibility& plausibility, const CoverageEvidence& evidence,
+             std::span<const FitStage> stages, std::vector<Candidate>& candidates) {
   parallel_for(candidates.size(), 1, [&](size_t begin, size_t end) {
     CoverageLikelihood::Scratch scratch(likelihood);
     for (size_t i = begin; i < end; ++i) {
       Candidate& c = candidates[i];
-      c.fit = fit_pose(likelihood, evidence, c.prior, c.fit.pose, stages, {.rest_weight = kRestWeight}, scratch);
+      c.fit = fit_pose(likelihood, plausibility, evidence, c.prior, c.fit.pose, stages, {.rest_weight = kRestWeight},
+                       scratch);
     }
   });
 }
@@ -179,8 +180,9 @@ StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, con
   return placed;
 }
 
-std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::span<const Observation> observations,
-                                     const StateBatch& candidates, const InitialisationOptions& options) {
+std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+                                     std::span<const Observation> observations, const StateBatch& candidates,
+                                     const InitialisationOptions& options) {
   check(candidates.rows() > 0, "initialise: no candidates");
   const BodyModel& body = likelihood.body();
   const Skeleton& skeleton = body.skeleton;
@@ -195,13 +197,13 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::
   for (size_t k = 0; k < starts.size(); ++k) {
     starts[k] = candidate_at(skeleton, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
   }
-  fit_all(likelihood, evidence, kCoarseStages, starts);
+  fit_all(likelihood, plausibility, evidence, kCoarseStages, starts);
   sort_best_first(starts);
   std::array<int, 8> taken{};
   std::erase_if(starts, [&](const Candidate& c) {
     return ++taken[static_cast<size_t>(heading_sector(skeleton, c.fit.pose))] > options.num_per_heading;
   });
-  fit_all(likelihood, evidence, kFineStages, starts);
+  fit_all(likelihood, plausibility, evidence, kFineStages, starts);
   sort_best_first(starts);
 
   // The whole body mirrored in depth looks almost the same; other limbs may look better. Round by round.
@@ -210,13 +212,13 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::
     const std::vector<double> pose = mirrored_in_depth(skeleton, view(starts[i].fit.pose), camera.centre_in_world());
     if (!pose.empty()) mirrored.push_back(candidate_at(skeleton, pose));
   }
-  fit_all(likelihood, evidence, kFineStages, mirrored);
+  fit_all(likelihood, plausibility, evidence, kFineStages, mirrored);
   std::ranges::move(mirrored, std::back_inserter(starts));
   keep_distinct(body, options.merge_distance, static_cast<size_t>(options.num_starts), starts);
   for (int round = 0; round < options.num_rounds && starts.front().fit.energy > kExplained; ++round) {
     std::vector<Candidate> variants = promising_variants(likelihood, evidence, camera.centre_in_world(), starts,
                                                          options, static_cast<uint64_t>(round));
-    fit_all(likelihood, evidence, kVariantStages, variants);
+    fit_all(likelihood, plausibility, evidence, kVariantStages, variants);
     std::ranges::move(variants, std::back_inserter(starts));
     keep_distinct(body, options.merge_distance, static_cast<size_t>(options.num_starts), starts);
   }

@@ -32,8 +32,9 @@ struct StartingPose {
 
 // Starting poses, best first; at least one. Shapes: one observation a camera; candidates [K, D], whose root translation
 // is replaced. REQUIRES: an observation in which something was found.
-std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, std::span<const Observation> observations,
-                                     const StateBatch& candidates, const InitialisationOptions& options = {});
+std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+                                     std::span<const Observation> observations, const StateBatch& candidates,
+                                     const InitialisationOptions& options = {});
 
 // Moves each candidate's root so that its silhouette has the area and the centroid of the observed one.
 // Shapes: [K, D] -> [K, D]. REQUIRES: something was found.

@@ -19,7 +19,7 @@ class InitialisationTest : public ::testing::Test {
   }
   std::vector<StartingPose> start(const std::vector<double>& truth, const StateBatch& candidates) const {
     const Observation seen = see(truth);
-    return initialise(likelihood_, {&seen, 1}, candidates);
+    return initialise(likelihood_, {body_, true}, {&seen, 1}, candidates);
   }
 
   std::shared_ptr<const BodyModel> body_ = std::make_shared<BodyModel>(make_test_body());

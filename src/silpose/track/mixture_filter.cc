@@ -41,9 +41,10 @@ struct MixtureFilter::Child {
 };
 
 MixtureFilter::MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine,
-                             std::shared_ptr<const CoverageLikelihood> coarse, const MixtureOptions& options)
-    : fine_(std::move(fine)), coarse_(std::move(coarse)), options_(options) {
-  check(fine_ && coarse_, "MixtureFilter: no likelihood");
+                             std::shared_ptr<const CoverageLikelihood> coarse,
+                             std::shared_ptr<const Plausibility> plausibility, const MixtureOptions& options)
+    : fine_(std::move(fine)), coarse_(std::move(coarse)), plausibility_(std::move(plausibility)), options_(options) {
+  check(fine_ && coarse_ && plausibility_, "MixtureFilter: no likelihood, or no plausibility");
   check(options.num_hypotheses >= 1, "MixtureFilter: {} hypotheses", options.num_hypotheses);
   const Skeleton& skeleton = fine_->body().skeleton;
   limbs_ = limbs_of(skeleton);
@@ -84,7 +85,8 @@ void MixtureFilter::step(const CoverageEvidence& evidence, double dt_s) {
     parallel_for(some.size(), 1, [&](size_t begin, size_t end) {
       CoverageLikelihood::Scratch scratch(*fine_);
       for (size_t i = begin; i < end; ++i) {
-        some[i].fit = fit_pose(*fine_, evidence, some[i].prior, some[i].start, stages, fit_options, scratch);
+        some[i].fit =
+            fit_pose(*fine_, *plausibility_, evidence, some[i].prior, some[i].start, stages, fit_options, scratch);
       }
     });
   };

@@ -23,7 +23,7 @@ struct MixtureOptions {
   int num_parents = 2;           // of new hypotheses, the best
   LimbSearchOptions limbs;       // of new hypotheses, for each parent
   double acceleration = 1.25;    // times motion/noise.h's acceleration_deviation
-  double rest_weight = 0.2;      // pose_fit.h
+  double rest_weight = 0.2;      // plausibility.h
   double jump_log_prior = -6;    // log-probability of a hypothesis that jumped
   double merge_distance = 0.05;  // metres: hypotheses whose every joint is nearer are one
   uint64_t seed = 1;
@@ -33,7 +33,7 @@ class MixtureFilter {
  public:
   // `fine` is fitted, `coarse` ranks candidates: two meshes of the same body before the same cameras.
   MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine, std::shared_ptr<const CoverageLikelihood> coarse,
-                const MixtureOptions& options);
+                std::shared_ptr<const Plausibility> plausibility, const MixtureOptions& options);
 
   // Starts over at poses [K][D], equally likely: the first step weighs them.
   void start(const std::vector<Eigen::VectorXd>& poses);
@@ -55,6 +55,7 @@ class MixtureFilter {
   void keep_best(std::vector<Child> children);
 
   std::shared_ptr<const CoverageLikelihood> fine_, coarse_;
+  std::shared_ptr<const Plausibility> plausibility_;
   MixtureOptions options_;
   std::vector<Limb> limbs_;
   std::vector<double> acceleration_;  // [D]

@@ -149,7 +149,9 @@ class TwoFilters final : public PoseFilter {
 
 std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const Likelihoods& likelihoods) {
   options.check();
-  if (options.num_hypotheses) return std::make_unique<FittedFilter>(options, likelihoods.fine, likelihoods.coarse);
+  if (options.num_hypotheses) {
+    return std::make_unique<FittedFilter>(options, likelihoods.fine, likelihoods.coarse, likelihoods.plausibility);
+  }
   if (options.preset == "thesis") return std::make_unique<TwoFilters>(options, likelihoods.renderers);
   return std::make_unique<JointFilter>(options, likelihoods.renderers);
 }

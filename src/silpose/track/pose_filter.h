@@ -50,10 +50,12 @@ class PoseFilter {
 };
 
 // What filters compare with: renderers of the tracker's level of detail, one a camera, for those that sample; a fine
-// and a coarse mesh for those that fit. All of the same body before the same cameras.
+// and a coarse mesh for those that fit, and what they know before any picture. All of the same body before the same
+// cameras.
 struct Likelihoods {
   std::vector<std::shared_ptr<const BatchRenderer>> renderers;
   std::shared_ptr<const CoverageLikelihood> fine, coarse;
+  std::shared_ptr<const Plausibility> plausibility;
 };
 
 // The filter of `options`, which are resolved.

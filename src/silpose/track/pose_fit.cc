@@ -10,8 +10,7 @@ namespace silpose {
 namespace {
 
 constexpr double kFirstDamping = 1e-3, kLessDamping = 0.2, kMoreDamping = 8, kMostDamping = 1e3;
-constexpr double kLimitDeviation = 0.02;  // radians beyond a limit that cost 1
-constexpr double kSmallestGain = 0.05;    // of the cost: less ends a stage
+constexpr double kSmallestGain = 0.05;  // of the cost: less ends a stage
 
 struct Point {
   Eigen::VectorXd pose;
@@ -21,8 +20,9 @@ struct Point {
   [[nodiscard]] double cost() const { return energy + prior_cost + other_cost; }
 };
 
-Point evaluate(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, const PosePrior& prior,
-               Blur blur, Eigen::VectorXd pose, double rest_weight, CoverageLikelihood::Scratch& scratch) {
+Point evaluate(const CoverageLikelihood& likelihood, const Plausibility& plausibility, const CoverageEvidence& evidence,
+               const PosePrior& prior, Blur blur, Eigen::VectorXd pose, double rest_weight,
+               CoverageLikelihood::Scratch& scratch) {
   Point point;
   point.pose = std::move(pose);
   NormalEquations equations = likelihood.linearise(evidence, blur, view(point.pose), scratch);
@@ -34,7 +34,7 @@ Point evaluate(const CoverageLikelihood& likelihood, const CoverageEvidence& evi
   point.gradient += pull;
   point.hessian = std::move(equations.hessian);
   point.hessian += prior.information;
-  point.other_cost = add_limits(likelihood.body().skeleton, point.pose, rest_weight, point.gradient, point.hessian);
+  point.other_cost = plausibility.add(point.pose, rest_weight, point.gradient, point.hessian);
   return point;
 }
 
@@ -58,33 +58,9 @@ void clamp_to_limits(const Skeleton& skeleton, Eigen::VectorXd& pose) {
   }
 }
 
-double add_limits(const Skeleton& skeleton, const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
-                  Eigen::MatrixXd& hessian) {
-  constexpr double kLimit = 1 / (kLimitDeviation * kLimitDeviation);
-  double cost = 0;
-  for (Eigen::Index d = 0; d < pose.size(); ++d) {
-    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-    if (dof.is_translation || dof.is_periodic) continue;
-    const double beyond = pose[d] - std::clamp(pose[d], dof.lower, dof.upper);
-    if (beyond != 0) {
-      cost += kLimit * beyond * beyond;
-      gradient[d] += kLimit * beyond;
-      hessian(d, d) += kLimit;
-    }
-    if (rest_weight > 0 && dof.joint_idx != 0) {
-      const double half_range = 0.5 * (dof.upper - dof.lower);
-      const double weight = rest_weight / (half_range * half_range);
-      const double off = pose[d] - std::clamp(0.0, dof.lower, dof.upper);
-      cost += weight * off * off;
-      gradient[d] += weight * off;
-      hessian(d, d) += weight;
-    }
-  }
-  return cost;
-}
-
-PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, const PosePrior& prior,
-                 const Eigen::VectorXd& start, std::span<const FitStage> stages, const PoseFitOptions& options,
+PoseFit fit_pose(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+                 const CoverageEvidence& evidence, const PosePrior& prior, const Eigen::VectorXd& start,
+                 std::span<const FitStage> stages, const PoseFitOptions& options,
                  CoverageLikelihood::Scratch& scratch) {
   check(!stages.empty(), "fit_pose: no stage");
   const Skeleton& skeleton = likelihood.body().skeleton;
@@ -92,7 +68,8 @@ PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& e
   Point at;
   at.pose = start;
   for (const FitStage& stage : stages) {
-    at = evaluate(likelihood, evidence, prior, stage.blur, std::move(at.pose), options.rest_weight, scratch);
+    at = evaluate(likelihood, plausibility, evidence, prior, stage.blur, std::move(at.pose), options.rest_weight,
+                  scratch);
     double damping = kFirstDamping;
     for (int iteration = 0; iteration < stage.max_iterations && damping < kMostDamping; ++iteration) {
       Eigen::MatrixXd damped = at.hessian;
@@ -100,7 +77,8 @@ PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& e
       damped.diagonal().array() += 1e-9;
       Eigen::VectorXd step = -damped.ldlt().solve(at.gradient);
       limit_step(skeleton, options, step);
-      Point next = evaluate(likelihood, evidence, prior, stage.blur, at.pose + step, options.rest_weight, scratch);
+      Point next =
+          evaluate(likelihood, plausibility, evidence, prior, stage.blur, at.pose + step, options.rest_weight, scratch);
       const double gain = at.cost() - next.cost();
       if (gain > 0) {
         at = std::move(next);

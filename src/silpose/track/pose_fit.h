@@ -1,5 +1,5 @@
 // fit_pose(): from a pose to the nearest best one: Gauss-Newton on the coverage likelihood, from wide blur to narrow,
-// under a Gaussian prior and soft limits.
+// under a Gaussian prior and what makes a pose plausible.
 // Based on: Levenberg-Marquardt (references.bib: nocedal2006); the measurement step of an iterated extended Kalman
 // filter (bell1993).
 // Threads: functions without state; one Scratch per thread.
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/plausibility.h"
 
 namespace silpose {
 
@@ -27,8 +28,8 @@ struct FitStage {
 struct PoseFit {
   Eigen::VectorXd pose;         // [D] within the limits
   double energy = 0;            // E at the last stage's blur
-  double prior_cost = 0;        // of the prior, the limits and the pull to rest
-  Eigen::MatrixXd information;  // [D, D] of the silhouette, the prior, the limits and the pull to rest
+  double prior_cost = 0;        // of the prior and of implausibility
+  Eigen::MatrixXd information;  // [D, D] of the silhouette, the prior and plausibility
   [[nodiscard]] double cost() const { return energy + prior_cost; }
 };
 
@@ -39,14 +40,9 @@ struct PoseFitOptions {
 };
 
 // From `start` [D], stage by stage. Errors: throws std::invalid_argument without a stage.
-PoseFit fit_pose(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence, const PosePrior& prior,
-                 const Eigen::VectorXd& start, std::span<const FitStage> stages, const PoseFitOptions& options,
-                 CoverageLikelihood::Scratch& scratch);
-
-// Information and gradient that keep a pose inside its limits, softly, and pull it to rest: adds to `gradient` [D] and
-// `hessian` [D, D] of half the cost, and returns the cost.
-double add_limits(const Skeleton& skeleton, const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
-                  Eigen::MatrixXd& hessian);
+PoseFit fit_pose(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+                 const CoverageEvidence& evidence, const PosePrior& prior, const Eigen::VectorXd& start,
+                 std::span<const FitStage> stages, const PoseFitOptions& options, CoverageLikelihood::Scratch& scratch);
 
 // Clamps what is limited, and keeps the whole turns of what is not: unlike Skeleton::clamp, which wraps. [D]
 void clamp_to_limits(const Skeleton& skeleton, Eigen::VectorXd& pose);

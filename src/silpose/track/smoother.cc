@@ -7,6 +7,7 @@
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/motion/noise.h"
+#include "silpose/track/footing.h"
 
 namespace silpose {
 namespace {
@@ -98,14 +99,16 @@ class BlockTridiagonal {
 struct Linearised {
   double cost = 0;
   std::vector<VectorXd> gradient;  // [T] of half the cost
-  std::vector<MatrixXd> hessian;   // [T] of the frames alone
+  std::vector<MatrixXd> hessian;   // [T] of the frames alone, and what stands in them
+  std::vector<MatrixXd> across;    // [T] of what stands: from a frame (rows) to the one before
 };
 
 class Problem {
  public:
-  Problem(const CoverageLikelihood& likelihood, std::span<const ClipInstant> clip, const std::vector<bool>& seen,
-          const SmootherOptions& options)
+  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility, std::span<const ClipInstant> clip,
+          const std::vector<bool>& seen, const SmootherOptions& options)
       : likelihood_(likelihood),
+        plausibility_(plausibility),
         clip_(clip),
         seen_(seen),
         options_(options),
@@ -113,10 +116,21 @@ class Problem {
     for (double& deviation : acceleration_) deviation *= options.acceleration;
   }
 
+  // Decides what stands, until it is called again.
+  void find_footholds(const std::vector<VectorXd>& poses) {
+    footholds_.assign(poses.size(), {});
+    if (plausibility_.floor_points().empty()) return;
+    const Skeleton& skeleton = likelihood_.body().skeleton;
+    for (size_t t = 1; t < poses.size(); ++t) {
+      footholds_[t] = footholds(plausibility_.floor_points(), {skeleton, view(poses[t - 1])},
+                                {skeleton, view(poses[t])}, seconds_before(t));
+    }
+  }
+
   [[nodiscard]] Linearised linearise(const std::vector<VectorXd>& poses, Blur blur) const {
     const size_t T = poses.size();
     const Eigen::Index D = poses.front().size();
-    Linearised at{0, std::vector<VectorXd>(T), std::vector<MatrixXd>(T)};
+    Linearised at{0, std::vector<VectorXd>(T), std::vector<MatrixXd>(T), std::vector<MatrixXd>(T)};
     std::vector<double> costs(T, 0.0);
     parallel_for(T, 4, [&](size_t begin, size_t end) {
       CoverageLikelihood::Scratch scratch(likelihood_);
@@ -131,11 +145,21 @@ class Problem {
           at.gradient[t] = std::move(equations.gradient);
           at.hessian[t] = std::move(equations.hessian);
         }
-        costs[t] +=
-            add_limits(likelihood_.body().skeleton, poses[t], options_.rest_weight, at.gradient[t], at.hessian[t]);
+        costs[t] += plausibility_.add(poses[t], options_.rest_weight, at.gradient[t], at.hessian[t]);
       }
     });
     for (const double cost : costs) at.cost += cost;
+    for (size_t t = 1; t < T; ++t) {
+      if (footholds_[t].empty()) continue;
+      const Skeleton& skeleton = likelihood_.body().skeleton;
+      FootholdEquations held = hold(footholds_[t], {skeleton, view(poses[t - 1])}, {skeleton, view(poses[t])}, D);
+      at.cost += held.cost;
+      at.gradient[t - 1] += held.gradient;
+      at.gradient[t] += held.gradient_next;
+      at.hessian[t - 1] += held.hessian;
+      at.hessian[t] += held.hessian_next;
+      at.across[t] = std::move(held.across);
+    }
     for (size_t t = 1; t + 1 < T; ++t) {
       const auto [before, after, weight] = acceleration_terms(t);
       const VectorXd change = after * poses[t + 1] - (after + before) * poses[t] + before * poses[t - 1];
@@ -154,6 +178,7 @@ class Problem {
     BlockTridiagonal matrix(T, D);
     for (size_t t = 0; t < T; ++t) {
       matrix.at(t, t) += at.hessian[t];
+      if (at.across[t].size() > 0) matrix.at(t, t - 1) += at.across[t];
       matrix.at(t, t).diagonal().array() += 1e-6;
     }
     for (size_t t = 1; t + 1 < T; ++t) {
@@ -170,13 +195,16 @@ class Problem {
   }
 
  private:
+  [[nodiscard]] double seconds_before(size_t t) const {
+    return static_cast<double>(clip_[t].time_ns - clip_[t - 1].time_ns) * 1e-9;
+  }
+
   struct AccelerationTerms {
     double before, after;  // 1 / dt to the frame before and after, in noise intervals
     VectorXd weight;       // [D] 1 / variance of the change of velocity
   };
   [[nodiscard]] AccelerationTerms acceleration_terms(size_t t) const {
-    const double before = static_cast<double>(clip_[t].time_ns - clip_[t - 1].time_ns) * 1e-9 / kNoiseInterval_s;
-    const double after = static_cast<double>(clip_[t + 1].time_ns - clip_[t].time_ns) * 1e-9 / kNoiseInterval_s;
+    const double before = seconds_before(t) / kNoiseInterval_s, after = seconds_before(t + 1) / kNoiseInterval_s;
     VectorXd weight(std::ssize(acceleration_));
     for (Eigen::Index d = 0; d < weight.size(); ++d) {
       const double deviation = acceleration_[static_cast<size_t>(d)];
@@ -186,10 +214,12 @@ class Problem {
   }
 
   const CoverageLikelihood& likelihood_;
+  const Plausibility& plausibility_;
   std::span<const ClipInstant> clip_;
   const std::vector<bool>& seen_;
   const SmootherOptions& options_;
   std::vector<double> acceleration_;
+  std::vector<std::vector<Foothold>> footholds_;  // [T] from the frame before
 };
 
 void keep_whole_turns(const Skeleton& skeleton, std::vector<VectorXd>& poses) {
@@ -201,17 +231,19 @@ void keep_whole_turns(const Skeleton& skeleton, std::vector<VectorXd>& poses) {
 
 }  // namespace
 
-SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, std::span<const ClipInstant> clip,
-                           const std::vector<bool>& seen, std::vector<Eigen::VectorXd> poses,
-                           const SmootherOptions& options, const std::function<bool()>& proceed) {
+SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+                           std::span<const ClipInstant> clip, const std::vector<bool>& seen,
+                           std::vector<Eigen::VectorXd> poses, const SmootherOptions& options,
+                           const std::function<bool()>& proceed) {
   check(!poses.empty() && poses.size() == clip.size() && seen.size() == clip.size(),
         "smooth_poses: {} poses of {} instants, {} of them marked", poses.size(), clip.size(), seen.size());
   check(!options.stages.empty(), "smooth_poses: no stage");
   const Skeleton& skeleton = likelihood.body().skeleton;
   keep_whole_turns(skeleton, poses);
-  const Problem problem(likelihood, clip, seen, options);
+  Problem problem(likelihood, plausibility, clip, seen, options);
   Linearised at;
   for (const FitStage& stage : options.stages) {
+    problem.find_footholds(poses);
     at = problem.linearise(poses, stage.blur);
     double damping = kFirstDamping;
     for (int iteration = 0; iteration < stage.max_iterations && damping < kMostDamping; ++iteration) {

@@ -18,7 +18,7 @@ namespace silpose {
 struct SmootherOptions {
   std::vector<FitStage> stages = {{Blur::k8, 4}, {Blur::k4, 4}, {Blur::k2, 4}};
   double acceleration = 1.25;  // times motion/noise.h's acceleration_deviation
-  double rest_weight = 0.2;    // pose_fit.h
+  double rest_weight = 0.2;    // plausibility.h
   std::vector<double> noise;   // [C] of the outlines, in units of pixel_unit^3; empty: that of exact masks
 };
 
@@ -30,8 +30,9 @@ struct SmoothedPoses {
 
 // Shapes: poses [T][D], an instant each. An instant of which `seen` [T] is false is bridged by motion alone. Whole
 // turns of periodic DOF are kept from one pose to the next. `proceed` is asked between iterations; false ends early.
-SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, std::span<const ClipInstant> clip,
-                           const std::vector<bool>& seen, std::vector<Eigen::VectorXd> poses,
-                           const SmootherOptions& options, const std::function<bool()>& proceed = {});
+SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+                           std::span<const ClipInstant> clip, const std::vector<bool>& seen,
+                           std::vector<Eigen::VectorXd> poses, const SmootherOptions& options,
+                           const std::function<bool()>& proceed = {});
 
 }  // namespace silpose

@@ -52,6 +52,7 @@ class ClipTracker {
                           ? options_.body
                           : std::make_shared<const BodyModel>(level_of_detail(*options_.body, *options_.lod_vertices));
     likelihood_ = std::make_shared<const CoverageLikelihood>(body, options_.cameras);
+    plausibility_ = std::make_shared<const Plausibility>(body, *options_.floor);
   }
 
   std::vector<StepReport> run() {
@@ -72,7 +73,7 @@ class ClipTracker {
     if (!stopped_) pass(first_, last_, last_pose_);
     if (stopped_) return {};
     const SmoothedPoses smoothed = smooth_poses(
-        *likelihood_, clip_.subspan(first_, last_ - first_ + 1),
+        *likelihood_, *plausibility_, clip_.subspan(first_, last_ - first_ + 1),
         {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
         best_path(), {.noise = noise_}, [&] { return proceed(); });
     if (stopped_) return {};
@@ -112,7 +113,7 @@ class ClipTracker {
     for (const size_t t : starts) {
       if (!proceed()) break;
       Rng rng(options_.seed, t);
-      const auto found = initialise(*likelihood_, clip_[t].observations,
+      const auto found = initialise(*likelihood_, *plausibility_, clip_[t].observations,
                                     proposal.propose(clip_[t].observations.front(), 0, rng), {.seed = options_.seed});
       if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
     }
@@ -298,6 +299,7 @@ class ClipTracker {
   std::span<const ClipInstant> clip_;
   const ClipProgress& progress_;
   std::shared_ptr<const CoverageLikelihood> likelihood_;
+  std::shared_ptr<const Plausibility> plausibility_;
   std::vector<Possible> possible_;  // [T]
   std::vector<bool> seen_;          // [T]
   std::vector<double> last_pose_, noise_;

@@ -54,7 +54,7 @@ TEST_F(ClipTest, SmoothingBridgesAGapAndKnowsItLess) {
     if (!seen.back()) pose = truth(5);
     poses.emplace_back(Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose)));
   }
-  const SmoothedPoses smoothed = smooth_poses(likelihood, instants, seen, poses, {});
+  const SmoothedPoses smoothed = smooth_poses(likelihood, {body_, true}, instants, seen, poses, {});
   ASSERT_EQ(smoothed.poses.size(), 15u);
   for (int t = 0; t < 15; ++t) {
     EXPECT_NEAR(smoothed.poses[static_cast<size_t>(t)][0], truth(t)[0], 0.02) << t;
@@ -69,11 +69,29 @@ TEST_F(ClipTest, WithoutSilhouettesTheMiddleIsKnownBest) {
   const auto instants = clip(7, 0, 7);
   const std::vector<double> pose = truth(0);
   const std::vector<Eigen::VectorXd> poses(7, Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose)));
-  const SmoothedPoses smoothed = smooth_poses(likelihood, instants, std::vector<bool>(7, false), poses, {});
+  const SmoothedPoses smoothed =
+      smooth_poses(likelihood, {body_, true}, instants, std::vector<bool>(7, false), poses, {});
   for (const int t : {0, 6})
     EXPECT_GT(smoothed.covariances[static_cast<size_t>(t)](5, 5), smoothed.covariances[3](5, 5));
   EXPECT_NEAR(smoothed.covariances[0](5, 5), smoothed.covariances[6](5, 5), 1e-6 * smoothed.covariances[0](5, 5));
   EXPECT_NEAR(smoothed.covariances[2](5, 5), smoothed.covariances[4](5, 5), 1e-6 * smoothed.covariances[2](5, 5));
+}
+
+TEST_F(ClipTest, WhatStandsDoesNotSlide) {
+  const CoverageLikelihood likelihood(body_, {camera_});
+  const auto instants = clip(9, 0, 9);
+  std::vector<Eigen::VectorXd> poses;
+  for (int t = 0; t < 9; ++t) {
+    poses.emplace_back(Eigen::VectorXd::Zero(8));
+    poses.back()[0] = 0.006 * t;
+    poses.back()[1] = 0.5;
+  }
+  const auto slide = [&](bool floor) {
+    const auto smoothed = smooth_poses(likelihood, {body_, floor}, instants, std::vector<bool>(9, false), poses, {});
+    return smoothed.poses[8][0] - smoothed.poses[0][0];
+  };
+  EXPECT_NEAR(slide(false), 0.048, 0.005);
+  EXPECT_NEAR(slide(true), 0, 0.005);
 }
 
 TEST_F(ClipTest, AccurateReportsEveryInstant) {

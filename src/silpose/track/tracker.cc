@@ -36,6 +36,7 @@ struct Tracker::Impl {
     };
     const auto fine = detail(*options.lod_vertices);
     likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
+    likelihoods.plausibility = std::make_shared<const Plausibility>(fine, *options.floor);
     if (options.num_hypotheses) {
       likelihoods.coarse =
           std::make_shared<const CoverageLikelihood>(detail(kRankingVertices), options.cameras, kRankingRows);
@@ -57,7 +58,7 @@ struct Tracker::Impl {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
-    return initialise(*likelihoods.fine, observations, candidates, {.seed = options.seed});
+    return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, {.seed = options.seed});
   }
 
   void summarise(std::span<const Observation> observations, StepReport& report) {

@@ -15,6 +15,7 @@ TrackerOptions TrackerOptions::resolved() const {
   if (!thesis && !num_particles && !num_layers) {
     if (!all.num_hypotheses) all.num_hypotheses = accurate ? 8 : 4;
     if (!all.smooth) all.smooth = accurate;
+    if (!all.floor) all.floor = true;
     if (!all.lod_vertices) all.lod_vertices = accurate ? 0 : 2500;
     return all;
   }
@@ -28,6 +29,7 @@ TrackerOptions TrackerOptions::resolved() const {
   if (!all.sharpness) all.sharpness = 100;
   if (!all.estimate) all.estimate = Estimate::kMean;
   if (!all.smooth) all.smooth = false;
+  if (!all.floor) all.floor = false;
   if (!all.lod_vertices) all.lod_vertices = 2000;
   return all;
 }
@@ -59,7 +61,8 @@ void TrackerOptions::check() const {
             fmt::format("sigma {} degrees, not within (0, 90]", *all.sigma_deg));
     require(std::isfinite(*all.sharpness) && *all.sharpness > 0,
             fmt::format("sharpness {} is not a positive number", *all.sharpness));
-    require(!*all.smooth, "smooth is of the fitted mixture: it goes with neither particles nor preset thesis");
+    require(!*all.smooth && !*all.floor,
+            "smooth and floor are of the fitted mixture: they go with neither particles nor preset thesis");
     const auto resampler = make_resampler(*all.resampling, *all.regenerate);
     require(resampler.ok(), resampler.ok() ? "" : resampler.error().message);
     const auto model = make_motion_model(*all.motion, body->skeleton, {});

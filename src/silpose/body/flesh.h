@@ -1,0 +1,31 @@
+// Flesh: which room a body takes, coarsely, for any skeleton: spheres inside its skin, each fixed to a bone, and the
+// points of every bone that reach furthest out. A vertex is of the bone that has most of its weight.
+// Source: largest empty balls that touch the skin (references.bib: ma2012).
+// Threads: functions without state; uses all cores and gives the same result on any number.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "silpose/body/body_model.h"
+
+namespace silpose {
+
+struct FleshSphere {
+  int joint_idx = 0;
+  Eigen::Vector3d centre_in_joint;
+  double radius = 0;  // metres; no vertex of the rest mesh lies inside
+};
+
+// Ordered by joint, then by size; a few a bone. Bones without vertices have none.
+[[nodiscard]] std::vector<FleshSphere> flesh_spheres(const BodyModel& body);
+
+struct SkinPoint {
+  int joint_idx = 0;
+  Eigen::Vector3d x_in_joint;
+};
+
+// The vertices that reach furthest along the axes of their joint, and between them; ordered by joint.
+[[nodiscard]] std::vector<SkinPoint> outermost_points(const BodyModel& body);
+
+}  // namespace silpose

@@ -1,0 +1,63 @@
+#include "silpose/body/flesh.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "silpose/body/point_motion.h"
+#include "silpose/body/test_body.h"
+
+namespace silpose {
+namespace {
+
+TEST(Flesh, ABallIsOneSphere) {
+  const std::vector<FleshSphere> spheres = flesh_spheres(make_ball_body());
+  ASSERT_EQ(spheres.size(), 2u);
+  for (int j = 0; j < 2; ++j) {
+    const FleshSphere& sphere = spheres[static_cast<size_t>(j)];
+    EXPECT_EQ(sphere.joint_idx, j);
+    EXPECT_NEAR(sphere.radius, 0.2, 0.002);
+    EXPECT_LT(sphere.centre_in_joint.norm(), 0.002);
+  }
+}
+
+TEST(Flesh, SpheresHoldNoVertexAndEveryBoneHasOne) {
+  const BodyModel body = make_test_body();
+  std::vector<int> count(body.skeleton.joints().size(), 0);
+  for (const FleshSphere& sphere : flesh_spheres(body)) {
+    const auto j = static_cast<size_t>(sphere.joint_idx);
+    ++count[j];
+    const Eigen::Vector3d centre = body.joint_from_rest[j].inverse() * sphere.centre_in_joint;
+    for (const Eigen::Vector3f& vertex : body.rest.vertices) {
+      EXPECT_GE((vertex.cast<double>() - centre).norm(), sphere.radius - 1e-5);
+    }
+  }
+  for (const int spheres : count) EXPECT_GE(spheres, 1);
+}
+
+TEST(Flesh, OutermostPointsReachTheEndsOfTheBody) {
+  const BodyModel body = make_test_body();
+  const PointMotion motion(body.skeleton, standing_pose(body));
+  Eigen::Vector3d lowest(9, 9, 9), highest(-9, -9, -9);
+  for (const SkinPoint& point : outermost_points(body)) {
+    const Eigen::Vector3d x = motion.position(point.joint_idx, point.x_in_joint);
+    lowest = lowest.cwiseMin(x);
+    highest = highest.cwiseMax(x);
+  }
+  EXPECT_LT((lowest - Eigen::Vector3d(-0.15, 0, -0.15)).norm(), 1e-4);
+  EXPECT_LT((highest - Eigen::Vector3d(0.15, 1.5, 0.15)).norm(), 1e-4);
+}
+
+TEST(PointMotion, AgreesWithPointJacobian) {
+  const BodyModel body = make_test_body();
+  const std::vector<double> pose = {0.1, 0.6, -0.2, 0.8, 0.3, -0.2, 0.5, 0.1};
+  const PointMotion motion(body.skeleton, pose);
+  const Eigen::Vector3d x = motion.position(2, {0.1, 0.2, 0.3}), direction(0.3, -1, 2);
+  Eigen::VectorXd derivative = Eigen::VectorXd::Zero(8);
+  motion.add_derivative(2, x, direction, derivative);
+  const auto jacobian = body.skeleton.point_jacobian(pose, body.skeleton.forward_kinematics(pose), 2, x);
+  EXPECT_TRUE(derivative.isApprox(jacobian.transpose() * direction, 1e-12));
+}
+
+}  // namespace
+}  // namespace silpose

@@ -1,0 +1,34 @@
+// Footing: what stands on the floor does not slide. Points of the body that are low and slow at two consecutive poses
+// are tied to each other.
+// Threads: functions without state.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "silpose/body/flesh.h"
+#include "silpose/body/point_motion.h"
+
+namespace silpose {
+
+struct Foothold {
+  SkinPoint point;
+  double weight = 0;  // metres^-2; those of one bone add up to no more than one foothold's
+};
+
+// Which of `points` stand from one pose to the next, `dt_s` later.
+[[nodiscard]] std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMotion& motion,
+                                              const PointMotion& next, double dt_s);
+
+// Half the cost's gradient [D] and Hessian [D, D] by two consecutive poses, and across: rows the next, columns the
+// first.
+struct FootholdEquations {
+  Eigen::VectorXd gradient, gradient_next;
+  Eigen::MatrixXd hessian, hessian_next, across;
+  double cost = 0;
+};
+[[nodiscard]] FootholdEquations hold(std::span<const Foothold> holds, const PointMotion& motion,
+                                     const PointMotion& next, Eigen::Index num_dofs);
+
+}  // namespace silpose

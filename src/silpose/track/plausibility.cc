@@ -1,0 +1,177 @@
+#include "silpose/track/plausibility.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "silpose/base/check.h"
+
+namespace silpose {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kLimitDeviation = 0.02;    // radians beyond a limit that cost 1
+constexpr double kOverlapDeviation = 0.02;  // metres that two spheres overlap, beyond what they do at rest
+constexpr double kYield = 0.02;             // metres that flesh gives way
+constexpr double kNeighbours = 2;           // radii: along the bones; nearer spheres are of one fold of flesh
+constexpr double kFloorDeviation = 0.02;    // metres below the floor
+
+double add_limits(const Skeleton& skeleton, const VectorXd& pose, double rest_weight, VectorXd& gradient,
+                  MatrixXd& hessian) {
+  constexpr double kLimit = 1 / (kLimitDeviation * kLimitDeviation);
+  double cost = 0;
+  for (Eigen::Index d = 0; d < pose.size(); ++d) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    if (dof.is_translation || dof.is_periodic) continue;
+    const double beyond = pose[d] - std::clamp(pose[d], dof.lower, dof.upper);
+    if (beyond != 0) {
+      cost += kLimit * beyond * beyond;
+      gradient[d] += kLimit * beyond;
+      hessian(d, d) += kLimit;
+    }
+    if (rest_weight > 0 && dof.joint_idx != 0) {
+      const double half_range = 0.5 * (dof.upper - dof.lower);
+      const double weight = rest_weight / (half_range * half_range);
+      const double off = pose[d] - std::clamp(0.0, dof.lower, dof.upper);
+      cost += weight * off * off;
+      gradient[d] += weight * off;
+      hessian(d, d) += weight;
+    }
+  }
+  return cost;
+}
+
+// weight * residual^2, whose derivative is `row` [D].
+double add_residual(double residual, double weight, const VectorXd& row, VectorXd& gradient, MatrixXd& hessian) {
+  gradient += weight * residual * row;
+  hessian.noalias() += (weight * row) * row.transpose();
+  return weight * residual * residual;
+}
+
+// From centre to centre by way of the joints between them.
+double distance_along_bones(const Skeleton& skeleton, const FleshSphere& a, const FleshSphere& b) {
+  FleshSphere ends[] = {a, b};
+  double length = 0;
+  while (ends[0].joint_idx != ends[1].joint_idx) {  // the one further down the tree goes up by a joint
+    FleshSphere& end = ends[0].joint_idx > ends[1].joint_idx ? ends[0] : ends[1];
+    const Joint& joint = skeleton.joints()[static_cast<size_t>(end.joint_idx)];
+    length += end.centre_in_joint.norm();
+    end = {joint.parent_idx, joint.offset_in_parent, 0};
+  }
+  return length + (ends[0].centre_in_joint - ends[1].centre_in_joint).norm();
+}
+
+// [J] about all spheres of each bone.
+std::vector<FleshSphere> bounds_of(size_t num_joints, const std::vector<FleshSphere>& spheres) {
+  std::vector<FleshSphere> bounds(num_joints, {0, Vector3d::Zero(), 0});
+  std::vector<double> count(num_joints, 0);
+  for (const FleshSphere& sphere : spheres) {
+    const auto j = static_cast<size_t>(sphere.joint_idx);
+    bounds[j].centre_in_joint += (sphere.centre_in_joint - bounds[j].centre_in_joint) / ++count[j];
+  }
+  for (const FleshSphere& sphere : spheres) {
+    FleshSphere& bound = bounds[static_cast<size_t>(sphere.joint_idx)];
+    bound.radius = std::max(bound.radius, (sphere.centre_in_joint - bound.centre_in_joint).norm() + sphere.radius);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : body_(std::move(body)) {
+  check(body_ != nullptr, "Plausibility: no body");
+  const Skeleton& skeleton = body_->skeleton;
+  spheres_ = flesh_spheres(*body_);
+  bounds_ = bounds_of(skeleton.joints().size(), spheres_);
+  if (floor) points_ = outermost_points(*body_);
+
+  const PointMotion hanging(skeleton, std::vector<double>(skeleton.dofs().size(), 0.0));
+  const auto distance_at_zero = [&](const FleshSphere& a, const FleshSphere& b) {
+    return (hanging.position(a.joint_idx, a.centre_in_joint) - hanging.position(b.joint_idx, b.centre_in_joint)).norm();
+  };
+  const auto distance_at_rest = [&](const FleshSphere& a, const FleshSphere& b) {
+    const auto in_rest = [&](const FleshSphere& s) {
+      return body_->joint_from_rest[static_cast<size_t>(s.joint_idx)].inverse() * s.centre_in_joint;
+    };
+    return (in_rest(a) - in_rest(b)).norm();
+  };
+  for (int i = 0; i < std::ssize(spheres_); ++i) {
+    for (int j = 0; j < i; ++j) {
+      const FleshSphere &a = spheres_[static_cast<size_t>(j)], &b = spheres_[static_cast<size_t>(i)];
+      if (distance_along_bones(skeleton, a, b) < kNeighbours * (a.radius + b.radius)) continue;
+      const auto same = [&](const BonePair& pair) { return pair.a == a.joint_idx && pair.b == b.joint_idx; };
+      auto pair = std::ranges::find_if(pairs_, same);
+      if (pair == pairs_.end()) pair = pairs_.insert(pair, {a.joint_idx, b.joint_idx, {}});
+      const double nearest = std::min(distance_at_zero(a, b), distance_at_rest(a, b));
+      pair->spheres.push_back({j, i, std::min(a.radius + b.radius, nearest) - kYield});
+    }
+  }
+}
+
+// visit(a, b, x_a, x_b, overlap) for spheres that overlap by more than at rest.
+template <typename Visit>
+void Plausibility::for_each_overlap(const PointMotion& motion, const Visit& visit) const {
+  std::vector<Vector3d> middles;
+  for (size_t j = 0; j < bounds_.size(); ++j) {
+    middles.push_back(motion.position(static_cast<int>(j), bounds_[j].centre_in_joint));
+  }
+  for (const BonePair& pair : pairs_) {
+    const auto a = static_cast<size_t>(pair.a), b = static_cast<size_t>(pair.b);
+    const double bound = bounds_[a].radius + bounds_[b].radius;
+    if ((middles[a] - middles[b]).squaredNorm() >= bound * bound) continue;
+    for (const SpherePair& touch : pair.spheres) {
+      const FleshSphere &one = spheres_[static_cast<size_t>(touch.a)], &other = spheres_[static_cast<size_t>(touch.b)];
+      const Vector3d x = motion.position(one.joint_idx, one.centre_in_joint);
+      const Vector3d y = motion.position(other.joint_idx, other.centre_in_joint);
+      const double squared = (x - y).squaredNorm();
+      if (squared < touch.reach * touch.reach) visit(one, other, x, y, touch.reach - std::sqrt(squared));
+    }
+  }
+}
+
+double Plausibility::add_penetration(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
+  constexpr double kWeight = 1 / (kOverlapDeviation * kOverlapDeviation);
+  double cost = 0;
+  VectorXd row(gradient.size());
+  for_each_overlap(
+      motion, [&](const FleshSphere& a, const FleshSphere& b, const Vector3d& x, const Vector3d& y, double overlap) {
+        const Vector3d closer = (y - x).stableNormalized();  // moving a along it makes the overlap larger
+        row.setZero();
+        motion.add_derivative(a.joint_idx, x, closer, row);
+        motion.add_derivative(b.joint_idx, y, -closer, row);
+        cost += add_residual(overlap, kWeight, row, gradient, hessian);
+      });
+  return cost;
+}
+
+double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
+  constexpr double kWeight = 1 / (kFloorDeviation * kFloorDeviation);
+  double cost = 0;
+  VectorXd row(gradient.size());
+  for (const SkinPoint& point : points_) {
+    const Vector3d x = motion.position(point.joint_idx, point.x_in_joint);
+    if (x.y() >= 0) continue;
+    row.setZero();
+    motion.add_derivative(point.joint_idx, x, Vector3d::UnitY(), row);
+    cost += add_residual(x.y(), kWeight, row, gradient, hessian);
+  }
+  return cost;
+}
+
+double Plausibility::add(const VectorXd& pose, double rest_weight, VectorXd& gradient, MatrixXd& hessian) const {
+  const PointMotion motion(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())});
+  return add_limits(body_->skeleton, pose, rest_weight, gradient, hessian) +
+         add_penetration(motion, gradient, hessian) + add_floor(motion, gradient, hessian);
+}
+
+double Plausibility::penetration(const VectorXd& pose) const {
+  const PointMotion motion(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())});
+  double deepest = 0;
+  for_each_overlap(motion, [&](const FleshSphere&, const FleshSphere&, const Vector3d&, const Vector3d&,
+                               double overlap) { deepest = std::max(deepest, overlap); });
+  return deepest;
+}
+
+}  // namespace silpose

@@ -1,0 +1,53 @@
+// Plausibility: what is known of a pose before any picture: joints stay within their limits and near rest, the body
+// does not pass through itself, and nothing of it lies below the floor y = 0. Found from mesh and skeleton of any body.
+// All of it is soft: least squares, as a fit of the silhouette takes it. Threads: constant after construction.
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "silpose/body/flesh.h"
+#include "silpose/body/point_motion.h"
+
+namespace silpose {
+
+class Plausibility {
+ public:
+  Plausibility(std::shared_ptr<const BodyModel> body, bool floor);
+
+  // Cost of a pose [D]; adds to `gradient` [D] and `hessian` [D, D] of half of it. `rest_weight` is that of the pull to
+  // rest, in units of (half a range)^-2.
+  double add(const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
+             Eigen::MatrixXd& hessian) const;
+
+  // What may touch the floor: nothing without one.
+  [[nodiscard]] std::span<const SkinPoint> floor_points() const { return points_; }
+
+  // How deep parts of a body in this pose [D] lie in each other, beyond what they do at rest: the deepest, metres.
+  [[nodiscard]] double penetration(const Eigen::VectorXd& pose) const;
+
+ private:
+  struct SpherePair {
+    int a = 0, b = 0;
+    double reach = 0;  // metres: nearer centres cost
+  };
+  // The spheres of two bones, which are looked at where the bones' bounds touch.
+  struct BonePair {
+    int a = 0, b = 0;
+    std::vector<SpherePair> spheres;
+  };
+  template <typename Visit>
+  void for_each_overlap(const PointMotion& motion, const Visit& visit) const;
+  double add_penetration(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
+  double add_floor(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
+
+  std::shared_ptr<const BodyModel> body_;
+  std::vector<FleshSphere> spheres_;
+  std::vector<FleshSphere> bounds_;  // [J] a sphere about all spheres of a bone
+  std::vector<BonePair> pairs_;
+  std::vector<SkinPoint> points_;  // none without a floor
+};
+
+}  // namespace silpose
