@@ -22,8 +22,9 @@ constexpr int kRankingVertices = 800, kRankingRows = 1;
 constexpr double kLongestCoast_s = 1.0;
 
 // A fit worse than this may be in a wrong basin: the pose is sought anew, first soon, then less and less often.
-constexpr double kGoodAccuracy = 0.92;
-constexpr double kFirstSeek_s = 0.12, kLongestSeek_s = 4;
+constexpr double kGoodAccuracy = 0.97;
+constexpr double kFirstSeek_s = 0.12, kLongestSeek_s = 8;
+constexpr int kSeekHeadings = 3;  // at a time, other ones each time
 
 }  // namespace
 
@@ -57,7 +58,12 @@ struct Tracker::Impl {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
-    return initialise(*likelihoods.fine, observations, candidates, {.seed = options.seed});
+    InitialisationOptions search{.seed = options.seed + static_cast<uint64_t>(steps)};
+    if (started) {
+      search.num_headings = kSeekHeadings;
+      search.first_heading = kSeekHeadings * num_seeks;
+    }
+    return initialise(*likelihoods.fine, observations, candidates, search);
   }
 
   void summarise(std::span<const Observation> observations, StepReport& report) {
@@ -84,6 +90,7 @@ struct Tracker::Impl {
     if (!options.num_hypotheses || since_seek_s < seek_interval_s) return;
     const Stopwatch stopwatch;
     filter->add(starting_poses(observations));
+    ++num_seeks;
     since_seek_s = 0;
     seek_interval_s = std::min(2 * seek_interval_s, kLongestSeek_s);
     report.seconds.start += stopwatch.seconds();
@@ -95,6 +102,7 @@ struct Tracker::Impl {
   std::vector<std::unique_ptr<Segmenter>> segmenters;  // online, one a camera; made when first needed
   std::vector<double> last_pose;
   bool started = false;
+  int num_seeks = 0;
   double seek_interval_s = kFirstSeek_s, since_seek_s = 0;
   int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
 };
