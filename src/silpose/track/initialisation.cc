@@ -5,6 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <optional>
+#include <utility>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
@@ -21,7 +24,12 @@ constexpr FitStage kCoarseStages[] = {{Blur::k32, 3}, {Blur::k16, 4}};
 constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}};
 constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};
 // E of a start that leaves nothing to explain; and how far a variant must be from its origin to be worth a fit, metres.
-constexpr double kExplained = 6, kNovelty = 0.15;
+constexpr double kExplained = 3, kNovelty = 0.15;
+constexpr double kTwoAtOnce = 0.3;  // share of the random limbs that come in pairs
+// A round of other limbs that leaves more than this of the cost is stale; as many of them in a row end a search. So
+// does an E, after as many rounds, that is far more than is left elsewhere.
+constexpr double kStaleCost = 0.97, kHopelessRatio = 5, kHopeless = 100;
+constexpr int kStaleRounds = 2;
 // Of the pull to rest: joints a quarter of their range off cost 1. It tells most fronts from backs.
 constexpr double kRestWeight = 4;
 
@@ -86,14 +94,23 @@ struct Candidate {
   PoseFit fit;
 };
 
-void fit_all(const CoverageLikelihood& likelihood, const Plausibility& plausibility, const CoverageEvidence& evidence,
-             std::span<const FitStage> stages, std::vector<Candidate>& candidates) {
+// What candidates are fitted to.
+struct Sight {
+  const CoverageLikelihood& likelihood;
+  const Plausibility& plausibility;
+  const CoverageEvidence& evidence;
+  Eigen::Vector3d eye;  // of the first camera with a say
+
+  [[nodiscard]] const BodyModel& body() const { return likelihood.body(); }
+};
+
+void fit_all(const Sight& sight, std::span<const FitStage> stages, std::vector<Candidate>& candidates) {
   parallel_for(candidates.size(), 1, [&](size_t begin, size_t end) {
-    CoverageLikelihood::Scratch scratch(likelihood);
+    CoverageLikelihood::Scratch scratch(sight.likelihood);
     for (size_t i = begin; i < end; ++i) {
       Candidate& c = candidates[i];
-      c.fit = fit_pose(likelihood, plausibility, evidence, c.prior, c.fit.pose, stages, {.rest_weight = kRestWeight},
-                       scratch);
+      c.fit = fit_pose(sight.likelihood, sight.plausibility, sight.evidence, c.prior, c.fit.pose, stages,
+                       {.rest_weight = kRestWeight}, scratch);
     }
   });
 }
@@ -123,21 +140,61 @@ void keep_distinct(const BodyModel& body, double distance, size_t most, std::vec
 }
 
 // Of the best starts, with the limbs that look most promising.
-std::vector<Candidate> promising_variants(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence,
-                                          const Eigen::Vector3d& eye, std::span<const Candidate> starts,
-                                          const InitialisationOptions& options, uint64_t round) {
-  const Skeleton& skeleton = likelihood.body().skeleton;
+std::vector<Candidate> promising_variants(const Sight& sight, std::span<const Candidate> starts,
+                                          const InitialisationOptions& options, uint64_t stream) {
+  const Skeleton& skeleton = sight.body().skeleton;
   const std::vector<Limb> limbs = limbs_of(skeleton);
-  const LimbSearchOptions search{options.num_random_limbs, options.num_fitted, kNovelty};
+  const LimbSearchOptions search{options.num_random_limbs, options.num_fitted, kNovelty, kTwoAtOnce};
   std::vector<Candidate> chosen;
   for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
-    Rng rng(options.seed, round, i);
+    Rng rng(options.seed, stream, i);
     for (const LimbVariant& variant :
-         promising_limbs(likelihood, evidence, limbs, view(starts[i].fit.pose), eye, search, rng)) {
+         promising_limbs(sight.likelihood, sight.evidence, limbs, view(starts[i].fit.pose), sight.eye, search, rng)) {
       chosen.push_back(candidate_at(skeleton, variant.pose));
     }
   }
   return chosen;
+}
+
+// Starts by the direction they face, the one with the best start first. REQUIRES: sorted, best first.
+std::vector<std::vector<Candidate>> by_heading(const Skeleton& skeleton, std::vector<Candidate> starts) {
+  std::vector<std::vector<Candidate>> groups;
+  std::array<std::optional<size_t>, 8> group_of;
+  for (Candidate& start : starts) {
+    auto& group = group_of[static_cast<size_t>(heading_sector(skeleton, start.fit.pose))];
+    if (!group) group = groups.size(), groups.emplace_back();
+    groups[*group].push_back(std::move(start));
+  }
+  return groups;
+}
+
+struct LimbRounds {
+  uint64_t index;  // of this search
+  double least;    // E of the best found by the others
+  int patience;    // stale rounds in a row
+};
+
+// Other limbs for one heading's starts, round by round, until the best explains the silhouette or progress stops. One
+// round is always worth it: what explains a silhouette may do so with right and left exchanged.
+void search_limbs(const Sight& sight, const InitialisationOptions& options, const LimbRounds& rounds,
+                  std::vector<Candidate>& starts) {
+  const auto keep = [&] {
+    keep_distinct(sight.body(), options.merge_distance, static_cast<size_t>(options.num_starts), starts);
+  };
+  keep();
+  int stale = 0;
+  for (int round = 0; round < options.num_rounds && stale < rounds.patience; ++round) {
+    const double energy = starts.front().fit.energy;
+    if (round > 0 && energy <= kExplained) return;
+    if (round >= kStaleRounds && energy > std::max(kHopelessRatio * rounds.least, kHopeless)) return;
+    const double before = starts.front().fit.cost();
+    const auto stream = rounds.index * static_cast<uint64_t>(options.num_rounds) + static_cast<uint64_t>(round);
+    std::vector<Candidate> variants = promising_variants(sight, starts, options, stream);
+    fit_all(sight, kVariantStages, variants);
+    std::ranges::move(variants, std::back_inserter(starts));
+    keep();
+    stale = starts.front().fit.cost() > kStaleCost * before ? stale + 1 : 0;
+  }
 }
 
 }  // namespace
@@ -197,31 +254,39 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   for (size_t k = 0; k < starts.size(); ++k) {
     starts[k] = candidate_at(skeleton, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
   }
-  fit_all(likelihood, plausibility, evidence, kCoarseStages, starts);
+  const Sight sight{likelihood, plausibility, evidence, camera.centre_in_world()};
+  fit_all(sight, kCoarseStages, starts);
   sort_best_first(starts);
   std::array<int, 8> taken{};
   std::erase_if(starts, [&](const Candidate& c) {
     return ++taken[static_cast<size_t>(heading_sector(skeleton, c.fit.pose))] > options.num_per_heading;
   });
-  fit_all(likelihood, plausibility, evidence, kFineStages, starts);
+  fit_all(sight, kFineStages, starts);
   sort_best_first(starts);
 
-  // The whole body mirrored in depth looks almost the same; other limbs may look better. Round by round.
+  // The whole body mirrored in depth looks almost the same.
   std::vector<Candidate> mirrored;
   for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
-    const std::vector<double> pose = mirrored_in_depth(skeleton, view(starts[i].fit.pose), camera.centre_in_world());
+    const std::vector<double> pose = mirrored_in_depth(skeleton, view(starts[i].fit.pose), sight.eye);
     if (!pose.empty()) mirrored.push_back(candidate_at(skeleton, pose));
   }
-  fit_all(likelihood, plausibility, evidence, kFineStages, mirrored);
+  fit_all(sight, kFineStages, mirrored);
   std::ranges::move(mirrored, std::back_inserter(starts));
-  keep_distinct(body, options.merge_distance, static_cast<size_t>(options.num_starts), starts);
-  for (int round = 0; round < options.num_rounds && starts.front().fit.energy > kExplained; ++round) {
-    std::vector<Candidate> variants = promising_variants(likelihood, evidence, camera.centre_in_world(), starts,
-                                                         options, static_cast<uint64_t>(round));
-    fit_all(likelihood, plausibility, evidence, kVariantStages, variants);
-    std::ranges::move(variants, std::back_inserter(starts));
-    keep_distinct(body, options.merge_distance, static_cast<size_t>(options.num_starts), starts);
+  sort_best_first(starts);
+
+  std::vector<std::vector<Candidate>> headings = by_heading(skeleton, std::move(starts));
+  starts.clear();
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t i = 0; i < headings.size(); ++i) {
+    const size_t h = (static_cast<size_t>(options.first_heading) + i) % headings.size();
+    if (std::cmp_less(i, options.num_headings) && least > kExplained) {
+      search_limbs(sight, options, {h, least, kStaleRounds}, headings[h]);
+    }
+    least = std::min(least, headings[h].front().fit.energy);
+    std::ranges::move(headings[h], std::back_inserter(starts));
   }
+  // The best of all once more, against each other, and with more patience.
+  search_limbs(sight, options, {headings.size(), least, options.num_rounds}, starts);
 
   // How good a fit can be tells how much the differences between fits mean.
   CoverageLikelihood::Scratch scratch(likelihood);

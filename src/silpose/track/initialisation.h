@@ -1,5 +1,6 @@
 // Initialisation: from one instant's masks and a set of common poses to ranked starting poses. Each candidate is placed
-// on the mask and fitted from wide blur to narrow; what looks almost the same as the best is fitted, too.
+// on the mask and fitted from wide blur to narrow. From the best of each heading a search of its own tries other limbs,
+// until one of them explains the silhouette: the best of all at first often cannot be mended limb by limb.
 // Source: cormier2019 sect. 2.4.1 (gradient descent from known common poses).
 // Threads: functions without state; all cores are used, and the result is the same on any number.
 #pragma once
@@ -15,8 +16,10 @@ namespace silpose {
 
 struct InitialisationOptions {
   int num_per_heading = 5;    // of eight: candidates that are fitted finely
-  int num_varied = 4;         // the best, of which other limbs are tried
-  int num_rounds = 6;         // of trying other limbs, at most: a start that explains the silhouette ends them
+  int num_headings = 8;       // that are searched, the best first, until a start explains the silhouette
+  int first_heading = 0;      // of the best, round and round
+  int num_varied = 4;         // the best of a heading, of which other limbs are tried
+  int num_rounds = 8;         // of trying other limbs of a heading, at most: no progress ends them
   int num_random_limbs = 60;  // tried of each, besides reflections and exchanges
   int num_fitted = 4;         // of those of each, the most promising
   int num_starts = 8;

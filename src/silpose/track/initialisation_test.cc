@@ -53,7 +53,8 @@ TEST_F(InitialisationTest, RanksTheBetterCandidateFirstAndKeepsOneOfEqualOnes) {
   candidates(0, 5) = -0.7;
   candidates(1, 5) = candidates(2, 5) = 0.6;
   const auto starts = start(truth, candidates);
-  EXPECT_NEAR(starts[0].pose[5] + starts[0].pose[7], truth[5] + truth[7], 0.2);  // the one that bends the right way
+  // The one that bends the right way: a tube may also have turned its back and bend the other.
+  EXPECT_LT((landmark_positions(*body_, starts[0].pose).back() - landmark_positions(*body_, truth).back()).norm(), 0.1);
   for (size_t i = 0; i < starts.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {  // the two that are equal are one
       EXPECT_GE(furthest_apart(landmark_positions(*body_, starts[i].pose), landmark_positions(*body_, starts[j].pose)),

@@ -13,7 +13,8 @@ namespace silpose {
 struct LimbSearchOptions {
   int num_random = 40;  // random limbs, besides reflections and exchanges
   int num_kept = 3;
-  double novelty = 0.12;  // metres: in some joint as far at least from the pose, and from each other
+  double novelty = 0.12;   // metres: in some joint as far at least from the pose, and from each other
+  double two_at_once = 0;  // share of the random limbs to which a second one is added
 };
 
 // Best first by one evaluation at Blur::k4. Shapes: pose [D]; limbs of the likelihood's body. `eye`: where the camera

@@ -207,7 +207,7 @@ std::vector<double> random_limb(const Skeleton& skeleton, const Limb& limb, std:
 }
 
 std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Limb> limbs, std::span<const double> pose,
-                                       const Eigen::Vector3d& eye, int num_random, Rng& rng) {
+                                       const Eigen::Vector3d& eye, int num_random, double two_at_once, Rng& rng) {
   std::vector<LimbVariant> variants;
   for (size_t l = 0; l < limbs.size(); ++l) {
     for (auto& reflected : reflected_limb(body, limbs[l], pose, eye)) variants.push_back({{l}, std::move(reflected)});
@@ -219,7 +219,13 @@ std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Li
   }
   for (int i = 0; i < num_random && !limbs.empty(); ++i) {
     const size_t l = static_cast<size_t>(i) % limbs.size();
-    variants.push_back({{l}, random_limb(body.skeleton, limbs[l], pose, rng)});
+    LimbVariant variant{{l}, random_limb(body.skeleton, limbs[l], pose, rng)};
+    if (limbs.size() > 1 && two_at_once > 0 && rng.uniform() < two_at_once) {
+      const size_t other = (l + 1 + rng.index(limbs.size() - 1)) % limbs.size();
+      variant.limbs.push_back(other);
+      variant.pose = random_limb(body.skeleton, limbs[other], variant.pose, rng);
+    }
+    variants.push_back(std::move(variant));
   }
   return variants;
 }

@@ -22,8 +22,11 @@ constexpr int kRankingVertices = 800, kRankingRows = 1;
 constexpr double kLongestCoast_s = 1.0;
 
 // A fit worse than this may be in a wrong basin: the pose is sought anew, first soon, then less and less often.
-constexpr double kGoodAccuracy = 0.92;
-constexpr double kFirstSeek_s = 0.12, kLongestSeek_s = 4;
+constexpr double kGoodAccuracy = 0.97;
+constexpr double kFirstSeek_s = 0.12;
+// So it is where the fit gets worse than it was of late by this much: bad masks alone do not have it sought for ever.
+constexpr double kAccuracyLost = 0.03, kOfLate_s = 1;
+constexpr int kSeekHeadings = 3;  // at a time, other ones each time
 
 }  // namespace
 
@@ -58,7 +61,12 @@ struct Tracker::Impl {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
-    return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, {.seed = options.seed});
+    InitialisationOptions search{.seed = options.seed + static_cast<uint64_t>(steps)};
+    if (started) {
+      search.num_headings = kSeekHeadings;
+      search.first_heading = kSeekHeadings * num_seeks;
+    }
+    return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, search);
   }
 
   void summarise(std::span<const Observation> observations, StepReport& report) {
@@ -78,15 +86,16 @@ struct Tracker::Impl {
   // Where the best hypothesis fits badly, new ones from scratch compete with it.
   void seek_anew(std::span<const Observation> observations, double dt_s, StepReport& report) {
     since_seek_s += dt_s;
-    if (report.visual_accuracy >= kGoodAccuracy) {
-      seek_interval_s = kFirstSeek_s;
-      return;
-    }
+    accuracy_of_late += (report.visual_accuracy - accuracy_of_late) * (dt_s > 0 ? std::min(dt_s / kOfLate_s, 1.0) : 1);
+    const bool good = report.visual_accuracy >= kGoodAccuracy;
+    if (good || report.visual_accuracy < accuracy_of_late - kAccuracyLost) seek_interval_s = kFirstSeek_s;
+    if (good) return;
     if (!options.num_hypotheses || since_seek_s < seek_interval_s) return;
     const Stopwatch stopwatch;
     filter->add(starting_poses(observations));
+    ++num_seeks;
     since_seek_s = 0;
-    seek_interval_s = std::min(2 * seek_interval_s, kLongestSeek_s);
+    seek_interval_s *= 2;
     report.seconds.start += stopwatch.seconds();
   }
 
@@ -96,7 +105,8 @@ struct Tracker::Impl {
   std::vector<std::unique_ptr<Segmenter>> segmenters;  // online, one a camera; made when first needed
   std::vector<double> last_pose;
   bool started = false;
-  double seek_interval_s = kFirstSeek_s, since_seek_s = 0;
+  int num_seeks = 0;
+  double seek_interval_s = kFirstSeek_s, since_seek_s = 0, accuracy_of_late = 0;
   int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
 };
 
