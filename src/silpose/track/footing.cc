@@ -21,6 +21,9 @@ double biweight(double ratio) {
 std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMotion& motion, const PointMotion& next,
                                 double dt_s) {
   std::vector<Foothold> holds;
+  for (const SkinPoint& point : points) {  // a body that reaches through the floor stands elsewhere
+    if (motion.position(point.joint_idx, point.x_in_joint).y() < -kHighest) return holds;
+  }
   size_t first_of_bone = 0;
   double sum = 0;
   const auto end_bone = [&] {  // the points of a bone share one foothold's weight
@@ -32,7 +35,7 @@ std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMo
     if (i > 0 && points[i - 1].joint_idx != point.joint_idx) end_bone();
     const Eigen::Vector3d x = motion.position(point.joint_idx, point.x_in_joint);
     const Eigen::Vector3d y = next.position(point.joint_idx, point.x_in_joint);
-    const double height = std::max({0.0, x.y(), y.y()});
+    const double height = std::max(std::abs(x.y()), std::abs(y.y()));
     const double speed = (y - x).norm() / dt_s;
     const double stands = biweight(height / kHighest) * biweight(speed / kFastest);
     if (stands <= 0) continue;

@@ -32,6 +32,10 @@ TEST_F(FootingTest, OnlyWhatIsLowAndSlowStands) {
   EXPECT_TRUE(footholds(points_, at(standing(0)), at(standing(0.1)), dt_s_).empty());
 }
 
+TEST_F(FootingTest, NothingStandsOnAFloorThatTheBodyReachesThrough) {
+  EXPECT_TRUE(footholds(points_, at(standing(0, -0.5)), at(standing(0, -0.5)), dt_s_).empty());
+}
+
 TEST_F(FootingTest, DerivativesAgreeWithFiniteDifferences) {
   const auto holds = footholds(points_, at(standing(0)), at(standing(0.005)), dt_s_);
   ASSERT_FALSE(holds.empty());

@@ -17,6 +17,7 @@ constexpr double kOverlapDeviation = 0.02;  // metres that two spheres overlap, 
 constexpr double kYield = 0.02;             // metres that flesh gives way
 constexpr double kNeighbours = 2;           // radii: along the bones; nearer spheres are of one fold of flesh
 constexpr double kFloorDeviation = 0.02;    // metres below the floor
+constexpr double kNoFloor = 0.2;            // metres below: the floor is not where it is said to be, and no longer pushes
 
 double add_limits(const Skeleton& skeleton, const VectorXd& pose, double rest_weight, VectorXd& gradient,
                   MatrixXd& hessian) {
@@ -153,9 +154,12 @@ double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, Ma
   for (const SkinPoint& point : points_) {
     const Vector3d x = motion.position(point.joint_idx, point.x_in_joint);
     if (x.y() >= 0) continue;
+    const double inside = std::max(0.0, 1 - x.y() * x.y() / (kNoFloor * kNoFloor));  // Tukey's biweight
+    cost += kWeight * kNoFloor * kNoFloor / 3 * (1 - inside * inside * inside);
+    if (inside == 0) continue;
     row.setZero();
     motion.add_derivative(point.joint_idx, x, Vector3d::UnitY(), row);
-    cost += add_residual(x.y(), kWeight, row, gradient, hessian);
+    add_residual(x.y(), kWeight * inside * inside, row, gradient, hessian);
   }
   return cost;
 }

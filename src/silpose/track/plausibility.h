@@ -1,5 +1,6 @@
 // Plausibility: what is known of a pose before any picture: joints stay within their limits and near rest, the body
-// does not pass through itself, and nothing of it lies below the floor y = 0. Found from mesh and skeleton of any body.
+// does not pass through itself, and nothing of it lies just below the floor y = 0 (what lies deep below shows that the
+// floor is elsewhere). Found from mesh and skeleton of any body.
 // All of it is soft: least squares, as a fit of the silhouette takes it. Threads: constant after construction.
 #pragma once
 
