@@ -144,5 +144,32 @@ TEST(RandomLimb, MovesOnlyTheLimbAndStaysInside) {
   }
 }
 
+TEST(LimbVariants, MoveOneLimbOrTwoAndNothingElse) {
+  const BodyModel& body = human();
+  const std::vector<Limb> limbs = limbs_of(body.skeleton);
+  const std::vector<double> pose = walking_pose();
+  const Eigen::Vector3d eye(2, 1, 5);
+  const auto with = [&](int num_random, double two_at_once) {
+    Rng rng(5);
+    return limb_variants(body, limbs, pose, eye, num_random, two_at_once, rng);
+  };
+  const auto told = with(0, 0);  // reflections and exchanges come first
+  for (const double two_at_once : {0.0, 0.5, 1.0}) {
+    const auto variants = with(40, two_at_once);
+    ASSERT_EQ(variants.size(), told.size() + 40);
+    int64_t pairs = 0;
+    for (size_t v = told.size(); v < variants.size(); ++v) {
+      pairs += std::ssize(variants[v].limbs) - 1;
+      for (size_t d = 0; d < pose.size(); ++d) {
+        const bool own = std::ranges::any_of(variants[v].limbs, [&](size_t l) {
+          return std::ranges::find(limbs[l].dofs, static_cast<int>(d)) != limbs[l].dofs.end();
+        });
+        EXPECT_TRUE(own || variants[v].pose[d] == pose[d]) << v << " " << d;
+      }
+    }
+    EXPECT_NEAR(static_cast<double>(pairs), 40 * two_at_once, two_at_once == 0.5 ? 12 : 0);
+  }
+}
+
 }  // namespace
 }  // namespace silpose
