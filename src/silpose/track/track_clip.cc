@@ -108,12 +108,16 @@ class ClipTracker {
     }
     const CommonPoses common(options_.body->skeleton);
     const Proposal& proposal = options_.proposal ? *options_.proposal : common;
+    // Passes start anew, so a coarse mesh will do to choose.
+    const auto body = std::make_shared<const BodyModel>(level_of_detail(*options_.body, kPassVertices));
+    const CoverageLikelihood likelihood(body, options_.cameras);
+    const Plausibility plausibility(body, *options_.floor);
     double best = -std::numeric_limits<double>::infinity();
     size_t chosen = starts.front();
     for (const size_t t : starts) {
       if (!proceed()) break;
       Rng rng(options_.seed, t);
-      const auto found = initialise(*likelihood_, *plausibility_, clip_[t].observations,
+      const auto found = initialise(likelihood, plausibility, clip_[t].observations,
                                     proposal.propose(clip_[t].observations.front(), 0, rng), {.seed = options_.seed});
       if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
     }
@@ -124,6 +128,7 @@ class ClipTracker {
   void pass(size_t from, size_t to, const std::optional<std::vector<double>>& pose) {
     TrackerOptions options = options_;
     if (pose) options.initial_pose = pose;
+    if (*options.lod_vertices == 0 || *options.lod_vertices > kPassVertices) options.lod_vertices = kPassVertices;
     Tracker tracker(options);
     const double direction = to >= from ? 1 : -1;
     const size_t count = (to >= from ? to - from : from - to) + 1;
@@ -290,6 +295,7 @@ class ClipTracker {
   }
 
   static constexpr double kNumPasses = 3;
+  static constexpr int kPassVertices = 2500;  // of the mesh that passes fit: they find the basin, the smoother the rest
   static constexpr int kBodyErrorVertices = 800;
   static constexpr double kPassShare = 0.35;     // of the whole work, one pass over the whole clip
   static constexpr double kTransitionScale = 4;  // times acceleration_deviation: hypotheses are fits, not truths

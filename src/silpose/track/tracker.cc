@@ -87,10 +87,8 @@ struct Tracker::Impl {
   void seek_anew(std::span<const Observation> observations, double dt_s, StepReport& report) {
     since_seek_s += dt_s;
     accuracy_of_late += (report.visual_accuracy - accuracy_of_late) * (dt_s > 0 ? std::min(dt_s / kOfLate_s, 1.0) : 1);
-    const bool good = report.visual_accuracy >= kGoodAccuracy;
-    if (good || report.visual_accuracy < accuracy_of_late - kAccuracyLost) seek_interval_s = kFirstSeek_s;
-    if (good) return;
-    if (!options.num_hypotheses || since_seek_s < seek_interval_s) return;
+    if (report.visual_accuracy < accuracy_of_late - kAccuracyLost) seek_interval_s = kFirstSeek_s;
+    if (!options.num_hypotheses || report.visual_accuracy >= kGoodAccuracy || since_seek_s < seek_interval_s) return;
     const Stopwatch stopwatch;
     filter->add(starting_poses(observations));
     ++num_seeks;
