@@ -126,8 +126,8 @@ void check_together(const TrackOptions& options) {
 
 bool fits_body(const TrackOptions& options) {
   const TrackerOptions resolved = options.tracker.resolved();
-  return options.fit_body.value_or(options.tracker.preset == "accurate" && resolved.num_hypotheses && *resolved.smooth &&
-                                   options.input.videos.size() > 1);
+  return options.fit_body.value_or(options.tracker.preset == "accurate" && resolved.num_hypotheses &&
+                                   *resolved.smooth && options.input.videos.size() > 1);
 }
 
 TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,

@@ -17,7 +17,8 @@ nlohmann::ordered_json figure(double mean, double std) {
 
 double frames_per_second(const Tracked& tracked) { return static_cast<double>(tracked.num_frames) / tracked.loop_s; }
 
-// How much longer the subject's bones are than the body's, and how sure that is: {"right_shin_length": {mean, std}, ...}
+// How much longer the subject's bones are than the body's, and how sure that is: {"right_shin_length": {mean, std},
+// ...}
 nlohmann::ordered_json fitted_lengths(const BodyFit& fit) {
   nlohmann::ordered_json lengths = nlohmann::ordered_json::object();
   for (size_t s = 0; s < fit.names.size(); ++s) lengths[fit.names[s]] = figure(fit.lengths[s], fit.deviations[s]);
@@ -61,7 +62,8 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
     outcome.text += fmt::format("overlay: {0}/overlay.mp4\nreport:  {0}/report.html", folder.string());
   }
   if (tracked.body_fit && !tracked.recording.steps.empty()) {
-    outcome.text += fmt::format("\nbody:    {}/{}, {:.3f} m tall", folder.string(), kFittedBodyFile, told.writer.body().height_m);
+    outcome.text +=
+        fmt::format("\nbody:    {}/{}, {:.3f} m tall", folder.string(), kFittedBodyFile, told.writer.body().height_m);
   }
   return outcome;
 }
@@ -84,7 +86,8 @@ Result<void> write_track_report(const TrackTold& told, const std::filesystem::pa
                   {"Silhouettes from", told.source.background()},
                   {"Camera", told.options.camera.file.empty() ? "assumed" : told.options.camera.file},
                   {"preset", told.options.tracker.preset}};
-  for (const auto& [name, value] : chosen_options(told.options, told.tracked.used)) report.facts.emplace_back(name, value);
+  for (const auto& [name, value] : chosen_options(told.options, told.tracked.used))
+    report.facts.emplace_back(name, value);
   report.facts.emplace_back("Seed", std::to_string(told.common.seed));
   report.facts.emplace_back("Frames a second", fmt::format("{:.2f}", frames_per_second(told.tracked)));
   return write_report(folder / "report.html", report);

@@ -98,8 +98,8 @@ class TrackRun {
       if (!tracker) tracker.emplace(tracker_options_);
       const StepReport report = tracker->step(now.observations, now.frame.index, now.frame.time_ns);
       const Stopwatch writing;
-      if (const Result<void> recorded = record(report); !recorded) return recorded;
-      const Result<void> drawn = writer_.add_picture(std::move(now.frame.images[0]), report.pose);
+      if (Result<void> recorded = record(report); !recorded) return recorded;
+      Result<void> drawn = writer_.add_picture(std::move(now.frame.images[0]), report.pose);
       if (!drawn) return drawn;
       tracked_.seconds.write += writing.seconds();
     }
@@ -121,7 +121,7 @@ class TrackRun {
     });
     double told_s = 0;
     for (const StepReport& report : reports) {
-      if (const Result<void> recorded = record(report); !recorded) return recorded;
+      if (Result<void> recorded = record(report); !recorded) return recorded;
       const StepSeconds& of_step = report.seconds;
       told_s += of_step.start + of_step.propagate + of_step.likelihood + of_step.resample;
     }
@@ -135,16 +135,17 @@ class TrackRun {
     online.smooth = false;
     std::vector<std::vector<double>> poses;
     for (const StepReport& report : track_clip(online, clip, [&](size_t done, size_t total) {
-           return console_.update("tracking the body as given", static_cast<int64_t>(done), static_cast<int64_t>(total));
+           return console_.update("tracking the body as given", static_cast<int64_t>(done),
+                                  static_cast<int64_t>(total));
          })) {
       poses.push_back(report.pose);
     }
     if (Console::interrupted()) return false;
     if (std::ranges::all_of(poses, [](const auto& pose) { return pose.empty(); })) return true;
     const auto total = static_cast<int64_t>(clip.size());
-    tracked_.body_fit = fit_body(tracker_options_.body, tracker_options_.cameras, clip, poses,
-                                 {.floor = *tracked_.used.floor},
-                                 [&] { return console_.update("fitting the body", total, total); });
+    tracked_.body_fit =
+        fit_body(tracker_options_.body, tracker_options_.cameras, clip, poses, {.floor = *tracked_.used.floor},
+                 [&] { return console_.update("fitting the body", total, total); });
     tracker_options_.body = tracked_.body_fit->body;
     writer_.set_fitted_body(tracked_.body_fit->body);
     return !Console::interrupted();
@@ -162,7 +163,7 @@ class TrackRun {
       if (!frame->has_value()) return error("{}: ended earlier when it was read again", video->name());
       const StepReport& report = reports[static_cast<size_t>(drawn)];
       if ((*frame)->index < report.frame_idx) continue;
-      const Result<void> added = writer_.add_picture(std::move((*frame)->images[0]), report.pose);
+      Result<void> added = writer_.add_picture(std::move((*frame)->images[0]), report.pose);
       if (!added) return added;
       ++drawn;
     }

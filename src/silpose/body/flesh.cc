@@ -96,15 +96,14 @@ std::vector<SkinPoint> outermost_points(const BodyModel& body) {
   for (size_t j = 0; j < by_joint.size(); ++j) {
     std::vector<uint32_t> chosen;
     for (int k = 0; k < 27 && !by_joint[j].empty(); ++k) {
-      const Eigen::Vector3d towards(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1);
+      const Eigen::Vector3d towards = Eigen::Vector3i(k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1).cast<double>();
       if (towards.isZero()) continue;
       chosen.push_back(*std::ranges::max_element(by_joint[j], {}, [&](uint32_t v) {
         return towards.normalized().dot(body.joint_from_rest[j].rotation * body.rest.vertices[v].cast<double>());
       }));
     }
     std::ranges::sort(chosen);
-    const auto again = std::ranges::unique(chosen);
-    chosen.erase(again.begin(), again.end());
+    chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     for (const uint32_t v : chosen) {
       points.push_back({static_cast<int>(j), body.joint_from_rest[j] * body.rest.vertices[v].cast<double>()});
     }

@@ -62,8 +62,8 @@ TEST(WithLengths, IsTheStretchedBodyMadeAnOrdinaryOne) {
 
   std::vector<double> none(shape.size(), 0.0);
   EXPECT_NEAR(with_lengths(human(), none).height_m, human().height_m, 1e-6);
-  none[static_cast<size_t>(std::ranges::find(shape, *stretched.skeleton.find_dof("right_shin_length")) - shape.begin())] =
-      -1;
+  none[static_cast<size_t>(std::ranges::find(shape, *stretched.skeleton.find_dof("right_shin_length")) -
+                           shape.begin())] = -1;
   EXPECT_THROW((void)with_lengths(human(), none), std::invalid_argument);
   EXPECT_THROW((void)with_lengths(human(), {}), std::invalid_argument);
 }

@@ -89,8 +89,7 @@ class Problem {
         VectorXd pose(D + S);
         pose << at.poses[t], at.lengths;
         NormalEquations equations = likelihood_.linearise(evidence_[t], blur, view(pose), scratch);
-        costs[t] =
-            equations.energy + plausibility_.add(pose, rest_weight_, equations.gradient, equations.hessian);
+        costs[t] = equations.energy + plausibility_.add(pose, rest_weight_, equations.gradient, equations.hessian);
         out.gradient[t] = equations.gradient.head(D);
         out.hessian[t] = equations.hessian.topLeftCorner(D, D);
         out.hessian[t].diagonal().array() += 1e-6;
@@ -164,8 +163,7 @@ BodyFit fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector
   }
   check(!usable.empty(), "fit_body: no instant has a pose");
 
-  const auto stretched =
-      std::make_shared<const BodyModel>(stretchable(level_of_detail(*body, options.num_vertices)));
+  const auto stretched = std::make_shared<const BodyModel>(stretchable(level_of_detail(*body, options.num_vertices)));
   const CoverageLikelihood likelihood(stretched, cameras);
   const std::vector<int> shape = shape_dofs(stretched->skeleton);
   const auto S = std::ssize(shape);

@@ -300,6 +300,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   };
   std::ranges::stable_sort(starts, std::greater<>{}, log_likelihood);
   std::vector<StartingPose> best;
+  best.reserve(starts.size());
   for (const Candidate& start : starts) {
     best.push_back({{start.fit.pose.begin(), start.fit.pose.end()}, log_likelihood(start)});
   }

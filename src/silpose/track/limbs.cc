@@ -169,8 +169,10 @@ std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Lim
   if (points.size() < 2) return variants;
   const auto world_from_joint = body.skeleton.forward_kinematics(pose);
   std::vector<Eigen::Vector3d> x;
-  for (const LimbPoint& point : points)
+  x.reserve(points.size());
+  for (const LimbPoint& point : points) {
     x.push_back(world_from_joint[static_cast<size_t>(point.joint_idx)] * point.offset);
+  }
   const Eigen::Vector3d ray = (x.front() - eye).normalized();
   const size_t num_segments = points.size() - 1;
   const auto add_reflection = [&](size_t first, size_t last) {

@@ -51,8 +51,7 @@ struct LimbVariant {
 // All of the above for one pose: reflections of each limb, exchanges, and `num_random` random limbs, in turn, each with
 // a second one besides with probability `two_at_once`.
 std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Limb> limbs, std::span<const double> pose,
-                                       const Eigen::Vector3d& eye, int num_random, double two_at_once,
-                                       Rng& rng);
+                                       const Eigen::Vector3d& eye, int num_random, double two_at_once, Rng& rng);
 
 // How far the joint or end point that is furthest off is off, metres. Shapes: landmarks [J + E] of two poses.
 double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b);

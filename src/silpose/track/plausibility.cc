@@ -17,7 +17,7 @@ constexpr double kOverlapDeviation = 0.02;  // metres that two spheres overlap, 
 constexpr double kYield = 0.02;             // metres that flesh gives way
 constexpr double kNeighbours = 2;           // radii: along the bones; nearer spheres are of one fold of flesh
 constexpr double kFloorDeviation = 0.02;    // metres below the floor
-constexpr double kNoFloor = 0.2;            // metres below: the floor is not where it is said to be, and no longer pushes
+constexpr double kNoFloor = 0.2;  // metres below: the floor is not where it is said to be, and no longer pushes
 
 double add_limits(const Skeleton& skeleton, const VectorXd& pose, double rest_weight, VectorXd& gradient,
                   MatrixXd& hessian) {

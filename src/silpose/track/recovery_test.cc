@@ -15,8 +15,8 @@ namespace {
 class RecoveryTest : public ::testing::Test {
  protected:
   static std::shared_ptr<const BodyModel> human() {
-    static const auto body = std::make_shared<const BodyModel>(level_of_detail(
-        build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 1500));
+    static const auto body = std::make_shared<const BodyModel>(
+        level_of_detail(build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 1500));
     return body;
   }
 
