@@ -24,9 +24,10 @@ constexpr double kLongestCoast_s = 1.0;
 // A fit worse than this may be in a wrong basin: the pose is sought anew, first soon, then less and less often.
 constexpr double kGoodAccuracy = 0.97;
 constexpr double kFirstSeek_s = 0.12;
-// So it is where the fit gets worse than it was of late by this much: bad masks alone do not have it sought for ever.
-constexpr double kAccuracyLost = 0.03, kOfLate_s = 1;
-constexpr int kSeekHeadings = 3;  // at a time, other ones each time
+// So it is where the fit gets worse than it was of late, by more than it goes up and down anyway: bad masks alone do not
+// have it sought for ever.
+constexpr double kLeastLost = 0.03, kLostDeviations = 3, kOfLate_s = 1;
+constexpr int kSeekHeadings = 3, kSeekRounds = 3;  // at a time, other ones each time
 
 }  // namespace
 
@@ -64,6 +65,7 @@ struct Tracker::Impl {
     InitialisationOptions search{.seed = options.seed + static_cast<uint64_t>(steps)};
     if (started) {
       search.num_headings = kSeekHeadings;
+      search.num_rounds = kSeekRounds;
       search.first_heading = kSeekHeadings * num_seeks;
     }
     return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, search);
@@ -86,8 +88,11 @@ struct Tracker::Impl {
   // Where the best hypothesis fits badly, new ones from scratch compete with it.
   void seek_anew(std::span<const Observation> observations, double dt_s, StepReport& report) {
     since_seek_s += dt_s;
-    accuracy_of_late += (report.visual_accuracy - accuracy_of_late) * (dt_s > 0 ? std::min(dt_s / kOfLate_s, 1.0) : 1);
-    if (report.visual_accuracy < accuracy_of_late - kAccuracyLost) seek_interval_s = kFirstSeek_s;
+    const double lost = accuracy_of_late - report.visual_accuracy;
+    if (lost > std::max(kLeastLost, kLostDeviations * deviation_of_late)) seek_interval_s = kFirstSeek_s;
+    const double share = dt_s > 0 ? std::min(dt_s / kOfLate_s, 1.0) : 1;
+    deviation_of_late += share * ((dt_s > 0 ? std::abs(lost) : 0) - deviation_of_late);
+    accuracy_of_late -= share * lost;
     if (!options.num_hypotheses || report.visual_accuracy >= kGoodAccuracy || since_seek_s < seek_interval_s) return;
     const Stopwatch stopwatch;
     filter->add(starting_poses(observations));
@@ -104,7 +109,7 @@ struct Tracker::Impl {
   std::vector<double> last_pose;
   bool started = false;
   int num_seeks = 0;
-  double seek_interval_s = kFirstSeek_s, since_seek_s = 0, accuracy_of_late = 0;
+  double seek_interval_s = kFirstSeek_s, since_seek_s = 0, accuracy_of_late = 0, deviation_of_late = 0;
   int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
 };
 
