@@ -9,15 +9,17 @@
 #include <string_view>
 #include <system_error>
 
+#include "apps/silpose/track_writer.h"
+
 namespace silpose::app {
 namespace {
 
 namespace fs = std::filesystem;
 
 // Everything that track, synth and segment put into a directory.
-constexpr std::array<std::string_view, 11> kFiles = {
+constexpr std::array<std::string_view, 12> kFiles = {
     "poses.csv",   "poses_normalised.csv", "spread.csv", "joints.csv", "camera.toml", "overlay.mp4",
-    "report.html", "config.toml",          "motion.bvh", "run.json",   "video.mp4"};
+    "report.html", "config.toml",          "motion.bvh", "run.json",   "video.mp4",   kFittedBodyFile};
 
 bool is_mask_folder(const fs::path& folder) {
   std::error_code failed;

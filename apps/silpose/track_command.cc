@@ -48,6 +48,7 @@ Result<Outcome> run_track(const CLI::App& app, const TrackOptions& options, cons
   std::vector<std::string> warnings = cameras->warnings;
   const std::vector<std::string> of_input = source->warnings();
   warnings.insert(warnings.end(), of_input.begin(), of_input.end());
+  warnings.insert(warnings.end(), tracked->warnings.begin(), tracked->warnings.end());
   const bool is_recorded = !tracked->recording.steps.empty();
   if (is_recorded && summarise(tracked->recording).frames_tracked == 0) {
     warnings.emplace_back("no person was seen: there is no pose in this result");

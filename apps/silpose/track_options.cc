@@ -86,7 +86,9 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
       ->capture_default_str()
       ->check(CLI::IsMember({"default", "accurate", "thesis"}));
   app.add_option("--vertices", options.tracker.lod_vertices,
-                 "About how many of the body's are compared (2500; sampling 2000; accurate and 0: all)")
+                 "About how many of the body's are compared (2500; sampling 2000; accurate and 0: all, where passes "
+                 "before the smoothing "
+                 "take 2500)")
       ->check(CLI::Range(0, 1'000'000));
   app.add_option("--init", options.init, "First pose: descent, or a poses.csv (its row of the first frame)")
       ->capture_default_str();

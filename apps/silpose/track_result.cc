@@ -36,7 +36,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run = run_facts(told.common);
   run["model"] = told.options.model;
   run["body"] = told.writer.body().name;
-  if (tracked.body_fit) run["fitted_lengths_m"] = fitted_lengths(*tracked.body_fit);
+  if (tracked.body_fit && !tracked.recording.steps.empty()) run["fitted_lengths_m"] = fitted_lengths(*tracked.body_fit);
   run["frames"] = tracked.num_frames;
   run["frames_tracked"] = summary.frames_tracked;
   run["frames_coasted"] = summary.frames_coasted;

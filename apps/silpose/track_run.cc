@@ -131,24 +131,27 @@ class TrackRun {
 
   // From here on the body has the subject's bone lengths, as the clip tracked online tells them. False: interrupted.
   bool fit_body_to(std::span<const ClipInstant> clip) {
-    TrackerOptions online = tracker_options_;
-    online.smooth = false;
     std::vector<std::vector<double>> poses;
-    for (const StepReport& report : track_clip(online, clip, [&](size_t done, size_t total) {
+    for (const StepReport& report : track_clip(options_of_pass(tracker_options_), clip, [&](size_t done, size_t total) {
            return console_.update("tracking the body as given", static_cast<int64_t>(done),
                                   static_cast<int64_t>(total));
          })) {
       poses.push_back(report.pose);
     }
     if (Console::interrupted()) return false;
-    if (std::ranges::all_of(poses, [](const auto& pose) { return pose.empty(); })) return true;
     const auto total = static_cast<int64_t>(clip.size());
-    tracked_.body_fit =
+    std::optional<BodyFit> fit =
         fit_body(tracker_options_.body, tracker_options_.cameras, clip, poses, {.floor = *tracked_.used.floor},
                  [&] { return console_.update("fitting the body", total, total); });
-    tracker_options_.body = tracked_.body_fit->body;
-    writer_.set_fitted_body(tracked_.body_fit->body);
-    return !Console::interrupted();
+    if (Console::interrupted()) return false;
+    if (!fit) {
+      tracked_.warnings.emplace_back("the body is as given: there is no frame in which two cameras see the subject");
+      return true;
+    }
+    tracker_options_.body = fit->body;
+    writer_.set_fitted_body(fit->body);
+    tracked_.body_fit = std::move(fit);
+    return true;
   }
 
   // The overlay, in a second pass over the pictures.

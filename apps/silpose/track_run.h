@@ -36,6 +36,7 @@ struct Tracked {
   StageSeconds seconds;
   double loop_s = 0;  // from the first frame to the last, all stages
   bool interrupted = false;
+  std::vector<std::string> warnings;
 };
 
 // `tracker`: tracker_options(). Errors: those of the video, the segmenter and the files; no frame between --start and

@@ -22,7 +22,9 @@ expect_failure 2 'smooth.*layers' "${fitted[@]}" --smooth --layers 2
 expect_failure 2 'smooth.*thesis' "${fitted[@]}" --smooth --preset thesis
 expect_failure 2 'floor.*layers' "${fitted[@]}" --floor --layers 2
 expect_failure 2 'smooth.*camera:0 is live' track camera:0 --out result --smooth
-expect_failure 2 'floor.*layers' "${fitted[@]}" --floor --layers 2
+expect_failure 2 'fit-body.*layers' "${fitted[@]}" --fit-body --layers 2
+expect_failure 2 'fit-body.*smooth' "${fitted[@]}" --fit-body
+expect_failure 2 'fit-body.*one camera' "${fitted[@]}" --fit-body --smooth
 expect_failure 2 'smooth.*camera:0 is live' track camera:0 --out result --preset accurate
 expect_failure 2 'vertices' "${fitted[@]}" --vertices 7
 for option in '--motion diffusion' '--sigma-deg 3' '--resampling comb' '--resample-below 0.5' '--regenerate 0.1' \

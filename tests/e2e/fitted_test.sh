@@ -54,6 +54,12 @@ pair=(track pair/masks_30 pair/masks_120 --segmenter masks --camera pair/camera.
 expect_at_least "$(number fitted.json fitted_lengths_m right_shin_length mean)" 0.01 "longer shin, metres"
 grep -q -x 'fit-body = true' pair_fitted/config.toml || fail "config.toml does not say that the body was fitted"
 grep -q -x 'fit-body = false' pair_given/config.toml || fail "config.toml does not say that the body was not fitted"
+grep -q 'floor = true' pair_fitted/config.toml || fail "config.toml does not say that there is a floor"
+cp -r pair_fitted pair_again
+"$silpose" track --config pair_fitted/config.toml --out pair_again --quiet || fail "--config of a fitted body, over a result: exit $?"
+for file in poses.csv joints.csv fitted.body config.toml; do
+  cmp -s pair_fitted/$file pair_again/$file || fail "fitted body: $file differs when the options come from config.toml"
+done
 "$silpose" evaluate --result pair_fitted --truth pair --json --quiet >fitted_errors.json
 "$silpose" evaluate --result pair_given --truth pair --json --quiet >given_errors.json
 expect_at_most "$(number fitted_errors.json joint_error_mm mean)" "$(number given_errors.json joint_error_mm mean)" \

@@ -24,9 +24,9 @@ BodyModel stretchable(const BodyModel& body, const StretchOptions& options = {})
 // Prior covariance [S, S] of the lengths, in DOF order. Shapes: S shape DOF of a skeleton made by stretchable().
 Eigen::MatrixXd stretch_covariance(const Skeleton& skeleton, const StretchOptions& options = {});
 
-// The body whose bones are longer by `lengths` [S] metres than they were when stretchable(body) was made, in the order of
-// shape_dofs(): an ordinary body of the same skeleton otherwise, for any pose of the first. Its stature changes with it.
-// Errors: throws std::invalid_argument for another number of lengths, or a bone that would vanish.
+// The body whose bones are longer by `lengths` [S] metres than they were when stretchable(body) was made, in the order
+// of shape_dofs(): an ordinary body of the same skeleton otherwise, for any pose of the first. Its stature changes with
+// it. Errors: throws std::invalid_argument for another number of lengths, or a bone that would vanish.
 BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths, const StretchOptions& options = {});
 
 // Indices of the shape DOF.

@@ -14,19 +14,27 @@ namespace silpose {
 namespace {
 
 constexpr std::array<const char*, 13> kEvaluatedJoints = {
-    "right_thigh",     "right_shin",    "right_foot", "left_thigh",     "left_shin",    "left_foot", "right_upper_arm",
-    "right_forearm",   "right_hand",    "left_upper_arm", "left_forearm", "left_hand", "head_top"};
+    "right_thigh",   "right_shin", "right_foot",     "left_thigh",   "left_shin", "left_foot", "right_upper_arm",
+    "right_forearm", "right_hand", "left_upper_arm", "left_forearm", "left_hand", "head_top"};
 constexpr size_t kRightHip = 0, kLeftHip = 3;  // hip joints, in the list above
 
 constexpr double kTimeSlack = 1e-6;  // times are written with six decimals
 
 // The figures in the order in which they are told.
 enum FigureIndex {
-  kPoseNpsu, kPoseDeg, kAngleDeg, kJointMm, kJointRootMm, kJointAlignedMm, kJointPx, kVisualAccuracy, kMaskIou,
+  kPoseNpsu,
+  kPoseDeg,
+  kAngleDeg,
+  kJointMm,
+  kJointRootMm,
+  kJointAlignedMm,
+  kJointPx,
+  kVisualAccuracy,
+  kMaskIou,
   kNumFigures
 };
 constexpr std::array<const char*, kNumFigures> kFigureNames = {
-    "pose_error_npsu", "pose_error_deg",         "angle_error_deg", "joint_error_mm", "joint_error_root_mm",
+    "pose_error_npsu",        "pose_error_deg", "angle_error_deg", "joint_error_mm", "joint_error_root_mm",
     "joint_error_aligned_mm", "joint_error_px", "visual_accuracy", "mask_iou"};
 
 using FrameFigures = std::array<std::optional<double>, kNumFigures>;
@@ -56,9 +64,13 @@ struct Side {
   std::map<int64_t, double> times;  // of every frame with a pose or joints
 };
 
-// Pictures of two cameras are not compared. A side that does not name its camera is taken to mean the other's.
+// Pictures of two cameras are not compared. A side without a camera, or with one that has no name of its own, is taken
+// to mean the other's.
 bool see_the_same(const Recorded& result, const Recorded& truth) {
-  return result.cameras.empty() || truth.cameras.empty() || result.cameras[0].name == truth.cameras[0].name;
+  if (result.cameras.empty() || truth.cameras.empty()) return true;
+  const std::string nameless = PinholeCamera().name;
+  const std::string &one = result.cameras[0].name, &other = truth.cameras[0].name;
+  return one == other || one == nameless || other == nameless;
 }
 
 void add_pose_errors(const Skeleton& skeleton, std::span<const double> pose, std::span<const double> truth,
@@ -136,8 +148,8 @@ std::vector<int64_t> true_frames(const Recorded& truth, const Side& truth_side, 
   std::vector<int64_t> frames;
   const auto add = [&](int64_t frame, const std::map<int64_t, double>& times) {
     const auto time = times.find(frame);
-    const bool inside = time == times.end() || (time->second >= options.start_s - kTimeSlack &&
-                                                time->second < options.end_s - kTimeSlack);
+    const bool inside = time == times.end() ||
+                        (time->second >= options.start_s - kTimeSlack && time->second < options.end_s - kTimeSlack);
     if (inside) frames.push_back(frame);
   };
   for (const auto& [frame, time] : truth_side.times) add(frame, truth_side.times);

@@ -67,7 +67,8 @@ Result<std::vector<FrameEvaluation>> evaluate_frames(const Recorded& result, con
                                                      const BodyModel& body, const EvaluateOptions& options = {});
 
 // Visual accuracy renders the result's poses of `body` through the truth's first camera (the result's, where the truth
-// has none); joint_error_px and mask_iou are left out where the first cameras have different names. Errors: a mask that cannot be read or has another size than its partner or the camera.
+// has none); joint_error_px and mask_iou are left out where the first cameras have different names. Errors: a mask that
+// cannot be read or has another size than its partner or the camera.
 Result<Evaluation> evaluate(const Recorded& result, const Recorded& truth, const BodyModel& body,
                             const EvaluateOptions& options = {});
 

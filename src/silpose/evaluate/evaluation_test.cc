@@ -123,8 +123,9 @@ TEST(Evaluate, PicturesOfTwoCamerasAreNotCompared) {
   truth.joints = JointTable{.rows = {joint(0, "left_hand", {0, 1, 1}, {100, 200})}};
   result.joints = truth.joints;
   truth.cameras = result.cameras = {look_at_camera(64, 96, 150, {0, 0.75, 3}, {0, 0.75, 0})};
+  truth.cameras[0].name = "north";
   EXPECT_TRUE(evaluate(result, truth, body()).value().find("joint_error_px").has_value());
-  result.cameras[0].name = "another";
+  result.cameras[0].name = "south";
   EXPECT_FALSE(evaluate(result, truth, body()).value().find("joint_error_px").has_value());
 }
 

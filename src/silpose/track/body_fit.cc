@@ -51,7 +51,14 @@ class Problem {
         plausibility_(plausibility),
         evidence_(std::move(evidence)),
         rest_weight_(rest_weight),
-        information_(stretch_covariance(likelihood.body().skeleton).inverse()) {}
+        information_(stretch_covariance(likelihood.body().skeleton).inverse()) {
+    const std::vector<int> shape = shape_dofs(likelihood.body().skeleton);
+    lower_.resize(std::ssize(shape)), upper_.resize(std::ssize(shape));
+    for (Eigen::Index s = 0; s < lower_.size(); ++s) {
+      const Dof& dof = likelihood.body().skeleton.dofs()[static_cast<size_t>(shape[static_cast<size_t>(s)])];
+      lower_[s] = dof.lower, upper_[s] = dof.upper;
+    }
+  }
 
   // Takes each camera's noise to be the median of the instants', as they fit now.
   void estimate_noise(const Unknowns& at) {
@@ -129,11 +136,11 @@ class Problem {
     return reduced;
   }
 
-  static Unknowns stepped(const Unknowns& from, const Linearised& at, double damping) {
+  [[nodiscard]] Unknowns stepped(const Unknowns& from, const Linearised& at, double damping) const {
     const Reduced reduced = reduce(at, damping);
     Unknowns to = from;
     const VectorXd longer = -reduced.hessian.ldlt().solve(reduced.gradient);
-    to.lengths += longer;
+    to.lengths = (to.lengths + longer).cwiseMax(lower_).cwiseMin(upper_);
     for (size_t t = 0; t < to.poses.size(); ++t) {
       VectorXd step = -reduced.pose_factor[t].solve(at.gradient[t] + at.mixed[t].transpose() * longer);
       const double most = step.cwiseAbs().maxCoeff();
@@ -148,20 +155,24 @@ class Problem {
   const Plausibility& plausibility_;
   std::vector<CoverageEvidence> evidence_;  // [T]
   double rest_weight_;
-  MatrixXd information_;
+  MatrixXd information_;    // [S, S] of the lengths' prior
+  VectorXd lower_, upper_;  // [S] limits of the lengths
 };
 
 }  // namespace
 
-BodyFit fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector<PinholeCamera>& cameras,
-                 std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
-                 const BodyFitOptions& options, const std::function<bool()>& proceed) {
+std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector<PinholeCamera>& cameras,
+                                std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
+                                const BodyFitOptions& options, const std::function<bool()>& proceed) {
   check(poses.size() == clip.size(), "fit_body: {} poses of {} instants", poses.size(), clip.size());
+  check(options.num_instants >= 1, "fit_body: from no instant");
   std::vector<size_t> usable;
   for (size_t t = 0; t < clip.size(); ++t) {
-    if (!poses[t].empty() && any_has_a_say(clip[t].observations)) usable.push_back(t);
+    check(poses[t].empty() || poses[t].size() == body->skeleton.dofs().size(),
+          "fit_body: a pose of {} numbers for {} DOF", poses[t].size(), body->skeleton.dofs().size());
+    if (!poses[t].empty() && std::ranges::count_if(clip[t].observations, has_a_say) >= 2) usable.push_back(t);
   }
-  check(!usable.empty(), "fit_body: no instant has a pose");
+  if (usable.empty()) return std::nullopt;
 
   const auto stretched = std::make_shared<const BodyModel>(stretchable(level_of_detail(*body, options.num_vertices)));
   const CoverageLikelihood likelihood(stretched, cameras);
@@ -173,7 +184,7 @@ BodyFit fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector
   for (size_t i = 0; i < count; ++i) {
     const size_t t = usable[(2 * i + 1) * usable.size() / (2 * count)];
     at.poses.emplace_back(Eigen::Map<const VectorXd>(poses[t].data(), std::ssize(poses[t])));
-    evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k2));
+    evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k4));
   }
   const auto proceeds = [&] { return !proceed || proceed(); };
   const Plausibility plausibility(stretched, options.floor);
@@ -185,7 +196,7 @@ BodyFit fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector
       linearised = problem.linearise(at, stage.blur);
       double damping = kFirstDamping;
       for (int i = 0; i < stage.max_iterations && damping < kMostDamping && proceeds(); ++i) {
-        Unknowns next = Problem::stepped(at, linearised, damping);
+        Unknowns next = problem.stepped(at, linearised, damping);
         Linearised there = problem.linearise(next, stage.blur);
         const double gain = linearised.cost - there.cost;
         if (gain > 0) {

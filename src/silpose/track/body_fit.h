@@ -7,6 +7,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,10 +32,11 @@ struct BodyFit {
   std::vector<double> deviations;         // [S] of what is not known of them
 };
 
-// `poses` [T][D] are those of the clip's instants; an empty one leaves its instant out.
-// Errors: throws std::invalid_argument where poses do not fit the clip, or all are empty.
-BodyFit fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector<PinholeCamera>& cameras,
-                 std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
-                 const BodyFitOptions& options = {}, const std::function<bool()>& proceed = {});
+// `poses` [T][D] are those of the clip's instants; an empty one leaves its instant out, and so does a subject whom
+// fewer than two cameras see. Nothing where no instant is left. Lengths stay within three deviations. Errors: throws
+// std::invalid_argument where poses do not fit the clip or the body.
+std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector<PinholeCamera>& cameras,
+                                std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
+                                const BodyFitOptions& options = {}, const std::function<bool()>& proceed = {});
 
 }  // namespace silpose

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/body/test_body.h"
@@ -41,7 +42,7 @@ class BodyFitTest : public ::testing::Test {
 };
 
 TEST_F(BodyFitTest, FindsTheLengthsThatTwoCamerasShow) {
-  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_);
+  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_).value();
   ASSERT_EQ(fit.lengths.size(), 2u);
   for (size_t s = 0; s < 2; ++s) {
     EXPECT_NEAR(fit.lengths[s], longer_[s], 0.01) << s;
@@ -52,18 +53,41 @@ TEST_F(BodyFitTest, FindsTheLengthsThatTwoCamerasShow) {
 }
 
 TEST_F(BodyFitTest, IsSureOfLessWhereLessIsSeen) {
-  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_);
-  const BodyFit of_one = fit_body(body_, cameras_, clip_, poses_, {.num_instants = 1});
+  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_).value();
+  const BodyFit of_one = fit_body(body_, cameras_, clip_, poses_, {.num_instants = 1}).value();
   for (size_t s = 0; s < 2; ++s) EXPECT_GT(of_one.deviations[s], fit.deviations[s]) << s;
 }
 
-TEST_F(BodyFitTest, LeavesOutWhatHasNoPoseAndRefusesNone) {
+TEST_F(BodyFitTest, LeavesOutWhatHasNoPose) {
   for (size_t t = 1; t < poses_.size(); ++t) poses_[t].clear();
-  EXPECT_NO_THROW((void)fit_body(body_, cameras_, clip_, poses_));
+  EXPECT_TRUE(fit_body(body_, cameras_, clip_, poses_).has_value());
   poses_[0].clear();
-  EXPECT_THROW((void)fit_body(body_, cameras_, clip_, poses_), std::invalid_argument);
+  EXPECT_FALSE(fit_body(body_, cameras_, clip_, poses_).has_value());
   poses_.pop_back();
   EXPECT_THROW((void)fit_body(body_, cameras_, clip_, poses_), std::invalid_argument);
+}
+
+TEST_F(BodyFitTest, NeedsTwoCamerasThatSeeTheSubject) {
+  for (ClipInstant& instant : clip_) instant.observations[1].trust.nothing_found = true;
+  EXPECT_FALSE(fit_body(body_, cameras_, clip_, poses_).has_value());
+}
+
+TEST_F(BodyFitTest, LengthsStayWithinLimitsWhereCamerasAreMixedUp) {
+  std::swap(cameras_[0], cameras_[1]);
+  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_).value();
+  const Skeleton skeleton = stretchable(*body_).skeleton;
+  for (size_t s = 0; s < fit.lengths.size(); ++s) {
+    EXPECT_LE(std::abs(fit.lengths[s]), skeleton.dofs()[static_cast<size_t>(shape_dofs(skeleton)[s])].upper + 1e-12);
+  }
+}
+
+TEST_F(BodyFitTest, TheNumberOfThreadsChangesNothing) {
+  std::vector<double> lengths[2];
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    lengths[threads - 1] = fit_body(body_, cameras_, clip_, poses_).value().lengths;
+  }
+  EXPECT_EQ(lengths[0], lengths[1]);
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace silpose {
 namespace {
 
-constexpr double kSlideDeviation = 0.003;  // metres from one frame to the next
+constexpr double kSlideDeviation = 0.016;  // metres in a second; its square grows with time
 // At these a point no longer stands; below, the less so the nearer it comes.
 constexpr double kHighest = 0.05, kFastest = 0.5;  // metres, metres per second
 
@@ -39,7 +39,7 @@ std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMo
     const double speed = (y - x).norm() / dt_s;
     const double stands = biweight(height / kHighest) * biweight(speed / kFastest);
     if (stands <= 0) continue;
-    holds.push_back({point, stands / (kSlideDeviation * kSlideDeviation)});
+    holds.push_back({point, stands / (kSlideDeviation * kSlideDeviation * dt_s)});
     sum += stands;
   }
   end_bone();

@@ -17,8 +17,8 @@ struct Foothold {
   double weight = 0;  // metres^-2; those of one bone add up to no more than one foothold's
 };
 
-// Which of `points`, all that may touch the floor, stand from one pose to the next, `dt_s` later: none where one of them
-// is well below the floor, which then is not where it is said to be.
+// Which of `points`, all that may touch the floor, stand from one pose to the next, `dt_s` later: none where one of
+// them is well below the floor, which then is not where it is said to be.
 [[nodiscard]] std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMotion& motion,
                                               const PointMotion& next, double dt_s);
 

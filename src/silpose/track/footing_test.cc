@@ -27,7 +27,7 @@ TEST_F(FootingTest, OnlyWhatIsLowAndSlowStands) {
     EXPECT_NEAR(hold.point.x_in_joint.y(), -0.5, 1e-6);
     sum += hold.weight;
   }
-  EXPECT_NEAR(sum, 1 / (0.003 * 0.003), 1);
+  EXPECT_NEAR(sum, 30 / (0.016 * 0.016), 1);
   EXPECT_TRUE(footholds(points_, at(standing(0, 0.1)), at(standing(0, 0.1)), dt_s_).empty());
   EXPECT_TRUE(footholds(points_, at(standing(0)), at(standing(0.1)), dt_s_).empty());
 }

@@ -18,11 +18,11 @@ Observation observation_from(Segmentation segmentation) {
   return observation;
 }
 
-bool any_has_a_say(std::span<const Observation> observations) {
-  return std::ranges::any_of(observations, [](const Observation& o) {
-    return !o.trust.nothing_found && !o.box.empty() && o.trust.overall >= kLeastTrust;
-  });
+bool has_a_say(const Observation& observation) {
+  return !observation.trust.nothing_found && !observation.box.empty() && observation.trust.overall >= kLeastTrust;
 }
+
+bool any_has_a_say(std::span<const Observation> observations) { return std::ranges::any_of(observations, has_a_say); }
 
 double visual_accuracy(const BodyModel& body, std::span<const PinholeCamera> cameras,
                        std::span<const Observation> observations, std::span<const double> pose) {

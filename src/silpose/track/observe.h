@@ -18,6 +18,7 @@ Observation observation_from(Segmentation segmentation);
 inline constexpr double kLeastTrust = 0.3;
 
 // Whether any camera saw something that is trusted enough to track by.
+bool has_a_say(const Observation& observation);
 bool any_has_a_say(std::span<const Observation> observations);
 
 // Intersection over union of a pose's silhouette and the mask of the first camera that found something; 0 without one.

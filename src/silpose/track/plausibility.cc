@@ -102,11 +102,13 @@ Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : 
     for (int j = 0; j < i; ++j) {
       const FleshSphere &a = spheres_[static_cast<size_t>(j)], &b = spheres_[static_cast<size_t>(i)];
       if (distance_along_bones(skeleton, a, b) < kNeighbours * (a.radius + b.radius)) continue;
+      const double nearest = std::min(distance_at_zero(a, b), distance_at_rest(a, b));
+      const double reach = std::min(a.radius + b.radius, nearest) - kYield;
+      if (reach <= 0) continue;
       const auto same = [&](const BonePair& pair) { return pair.a == a.joint_idx && pair.b == b.joint_idx; };
       auto pair = std::ranges::find_if(pairs_, same);
       if (pair == pairs_.end()) pair = pairs_.insert(pair, {a.joint_idx, b.joint_idx, {}});
-      const double nearest = std::min(distance_at_zero(a, b), distance_at_rest(a, b));
-      pair->spheres.push_back({j, i, std::min(a.radius + b.radius, nearest) - kYield});
+      pair->spheres.push_back({j, i, reach});
     }
   }
 }
@@ -149,16 +151,21 @@ double Plausibility::add_penetration(const PointMotion& motion, VectorXd& gradie
 
 double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
   constexpr double kWeight = 1 / (kFloorDeviation * kFloorDeviation);
+  std::vector<Vector3d> positions;
+  positions.reserve(points_.size());
+  for (const SkinPoint& point : points_) {
+    positions.push_back(motion.position(point.joint_idx, point.x_in_joint));
+    if (positions.back().y() < -kNoFloor) return 0;
+  }
   double cost = 0;
   VectorXd row(gradient.size());
-  for (const SkinPoint& point : points_) {
-    const Vector3d x = motion.position(point.joint_idx, point.x_in_joint);
+  for (size_t i = 0; i < points_.size(); ++i) {
+    const Vector3d& x = positions[i];
     if (x.y() >= 0) continue;
-    const double inside = std::max(0.0, 1 - x.y() * x.y() / (kNoFloor * kNoFloor));  // Tukey's biweight
+    const double inside = 1 - x.y() * x.y() / (kNoFloor * kNoFloor);  // Tukey's biweight
     cost += kWeight * kNoFloor * kNoFloor / 3 * (1 - inside * inside * inside);
-    if (inside == 0) continue;
     row.setZero();
-    motion.add_derivative(point.joint_idx, x, Vector3d::UnitY(), row);
+    motion.add_derivative(points_[i].joint_idx, x, Vector3d::UnitY(), row);
     add_residual(x.y(), kWeight * inside * inside, row, gradient, hessian);
   }
   return cost;
@@ -168,14 +175,6 @@ double Plausibility::add(const VectorXd& pose, double rest_weight, VectorXd& gra
   const PointMotion motion(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())});
   return add_limits(body_->skeleton, pose, rest_weight, gradient, hessian) +
          add_penetration(motion, gradient, hessian) + add_floor(motion, gradient, hessian);
-}
-
-double Plausibility::penetration(const VectorXd& pose) const {
-  const PointMotion motion(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())});
-  double deepest = 0;
-  for_each_overlap(motion, [&](const FleshSphere&, const FleshSphere&, const Vector3d&, const Vector3d&,
-                               double overlap) { deepest = std::max(deepest, overlap); });
-  return deepest;
 }
 
 }  // namespace silpose

@@ -1,6 +1,6 @@
 // Plausibility: what is known of a pose before any picture: joints stay within their limits and near rest, the body
-// does not pass through itself, and nothing of it lies just below the floor y = 0 (what lies deep below shows that the
-// floor is elsewhere). Found from mesh and skeleton of any body.
+// does not pass through itself, and nothing of it lies just below the floor y = 0 (where any point lies deep below, the
+// floor is elsewhere, and nothing is pushed). Found from mesh and skeleton of any body.
 // All of it is soft: least squares, as a fit of the silhouette takes it. Threads: constant after construction.
 #pragma once
 
@@ -25,9 +25,6 @@ class Plausibility {
 
   // What may touch the floor: nothing without one.
   [[nodiscard]] std::span<const SkinPoint> floor_points() const { return points_; }
-
-  // How deep parts of a body in this pose [D] lie in each other, beyond what they do at rest: the deepest, metres.
-  [[nodiscard]] double penetration(const Eigen::VectorXd& pose) const;
 
  private:
   struct SpherePair {

@@ -72,7 +72,6 @@ TEST(Plausibility, StandingAtRestCostsNothing) {
   for (const Body& body : {human(), std::make_shared<const BodyModel>(make_test_body())}) {
     const VectorXd pose = vector_of(standing_pose(*body));
     EXPECT_LT(Added(Plausibility(body, true), pose).cost, 1e-6);
-    EXPECT_EQ(Plausibility(body, true).penetration(pose), 0);
   }
 }
 
@@ -82,7 +81,6 @@ TEST(Plausibility, OverlapWorkedByHand) {
   const Plausibility plausibility(balls, true);
   EXPECT_EQ(Added(plausibility, vector_of({0, 0, -0.57})).cost, 0);
   const VectorXd pose = vector_of({0, 0, -0.7});
-  EXPECT_NEAR(plausibility.penetration(pose), 0.08, 0.004);
   const Added at(plausibility, pose);
   EXPECT_NEAR(at.cost, 16, 1.6);
   EXPECT_NEAR(at.gradient[2], -0.08 / 0.0004, 10);
@@ -92,10 +90,11 @@ TEST(Plausibility, OverlapWorkedByHand) {
 
 TEST(Plausibility, AFloorThatIsElsewhereDoesNotPush) {
   const auto balls = std::make_shared<const BodyModel>(make_ball_body());
-  const Added at(Plausibility(balls, true), vector_of({-0.7, 0, 0}));  // wholly below
-  EXPECT_EQ(at.gradient[0], 0);
-  EXPECT_EQ(at.hessian(0, 0), 0);
-  EXPECT_GT(at.cost, 0);
+  for (const double sunk : {-0.3, -0.7}) {  // half, and wholly
+    const Added at(Plausibility(balls, true), vector_of({sunk, 0, 0}));
+    EXPECT_EQ(at.gradient[0], 0);
+    EXPECT_EQ(at.cost, 0);
+  }
 }
 
 TEST(Plausibility, FloorPushesUpWhatIsBelow) {

@@ -109,7 +109,8 @@ class ClipTracker {
     const CommonPoses common(options_.body->skeleton);
     const Proposal& proposal = options_.proposal ? *options_.proposal : common;
     // Passes start anew, so a coarse mesh will do to choose.
-    const auto body = std::make_shared<const BodyModel>(level_of_detail(*options_.body, kPassVertices));
+    const auto body =
+        std::make_shared<const BodyModel>(level_of_detail(*options_.body, *options_of_pass(options_).lod_vertices));
     const CoverageLikelihood likelihood(body, options_.cameras);
     const Plausibility plausibility(body, *options_.floor);
     double best = -std::numeric_limits<double>::infinity();
@@ -126,9 +127,8 @@ class ClipTracker {
 
   // Tracks from one instant to another, backwards where that lies before, and keeps all hypotheses.
   void pass(size_t from, size_t to, const std::optional<std::vector<double>>& pose) {
-    TrackerOptions options = options_;
+    TrackerOptions options = options_of_pass(options_);
     if (pose) options.initial_pose = pose;
-    if (*options.lod_vertices == 0 || *options.lod_vertices > kPassVertices) options.lod_vertices = kPassVertices;
     Tracker tracker(options);
     const double direction = to >= from ? 1 : -1;
     const size_t count = (to >= from ? to - from : from - to) + 1;
@@ -295,7 +295,6 @@ class ClipTracker {
   }
 
   static constexpr double kNumPasses = 3;
-  static constexpr int kPassVertices = 2500;  // of the mesh that passes fit: they find the basin, the smoother the rest
   static constexpr int kBodyErrorVertices = 800;
   static constexpr double kPassShare = 0.35;     // of the whole work, one pass over the whole clip
   static constexpr double kTransitionScale = 4;  // times acceleration_deviation: hypotheses are fits, not truths
@@ -315,6 +314,14 @@ class ClipTracker {
 };
 
 }  // namespace
+
+TrackerOptions options_of_pass(const TrackerOptions& options) {
+  constexpr int kVertices = 2500;
+  TrackerOptions pass = options.resolved();
+  pass.smooth = false;
+  if (*pass.lod_vertices == 0 || *pass.lod_vertices > kVertices) pass.lod_vertices = kVertices;
+  return pass;
+}
 
 std::vector<StepReport> track_clip(const TrackerOptions& options, std::span<const ClipInstant> clip,
                                    const ClipProgress& progress) {

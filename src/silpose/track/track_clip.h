@@ -20,6 +20,10 @@ struct ClipInstant {
   std::vector<Observation> observations;  // [C]
 };
 
+// `options` for a pass over a clip that is only to find the basin: online, and on a mesh that is no finer than that
+// needs.
+TrackerOptions options_of_pass(const TrackerOptions& options);
+
 // Told after each instant; tracking ends early when it returns false.
 using ClipProgress = std::function<bool(size_t instants_done, size_t instants_total)>;
 

@@ -24,8 +24,8 @@ constexpr double kLongestCoast_s = 1.0;
 // A fit worse than this may be in a wrong basin: the pose is sought anew, first soon, then less and less often.
 constexpr double kGoodAccuracy = 0.97;
 constexpr double kFirstSeek_s = 0.12;
-// So it is where the fit gets worse than it was of late, by more than it goes up and down anyway: bad masks alone do not
-// have it sought for ever.
+// So it is where the fit gets worse than it was of late, by more than it goes up and down anyway: bad masks alone do
+// not have it sought for ever.
 constexpr double kLeastLost = 0.03, kLostDeviations = 3, kOfLate_s = 1;
 constexpr int kSeekHeadings = 3, kSeekRounds = 3;  // at a time, other ones each time
 
@@ -88,10 +88,11 @@ struct Tracker::Impl {
   // Where the best hypothesis fits badly, new ones from scratch compete with it.
   void seek_anew(std::span<const Observation> observations, double dt_s, StepReport& report) {
     since_seek_s += dt_s;
+    if (dt_s == 0) accuracy_of_late = report.visual_accuracy, deviation_of_late = 0;  // just started
     const double lost = accuracy_of_late - report.visual_accuracy;
     if (lost > std::max(kLeastLost, kLostDeviations * deviation_of_late)) seek_interval_s = kFirstSeek_s;
-    const double share = dt_s > 0 ? std::min(dt_s / kOfLate_s, 1.0) : 1;
-    deviation_of_late += share * ((dt_s > 0 ? std::abs(lost) : 0) - deviation_of_late);
+    const double share = std::min(dt_s / kOfLate_s, 1.0);
+    deviation_of_late += share * (std::abs(lost) - deviation_of_late);
     accuracy_of_late -= share * lost;
     if (!options.num_hypotheses || report.visual_accuracy >= kGoodAccuracy || since_seek_s < seek_interval_s) return;
     const Stopwatch stopwatch;
@@ -150,7 +151,8 @@ StepReport Tracker::step(std::span<const Observation> observations, int64_t fram
     report.effective_sample_size = t.filter->coast(dt_s).effective_sample_size;
   }
   if (t.started) t.summarise(observations, report);
-  if (t.started && seen) t.seek_anew(observations, dt_s, report);
+  const bool is_new = report.state == StepReport::State::kInitialised;
+  if (t.started && seen) t.seek_anew(observations, is_new ? 0 : dt_s, report);
 
   ++t.steps;
   t.last_time_ns = time_ns;

@@ -35,7 +35,7 @@ struct TrackerOptions {
   std::optional<double> sharpness;
   std::optional<Estimate> estimate;
   bool root_fixed = false;          // the six root DOF stay where they started
-  std::optional<int> lod_vertices;  // of the mesh that is compared; 0: the body's own
+  std::optional<int> lod_vertices;  // of the mesh that is compared, smoothed clips: in the end; 0: the body's own
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
   std::shared_ptr<const Proposal> proposal;  // candidates for the start and for regeneration; absent: common poses
