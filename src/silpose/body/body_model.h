@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -56,6 +57,10 @@ void skin_vertices(const BodyModel& body, std::span<const double> pose, std::spa
 // Source: quadric error metric (garland1997), by meshoptimizer.
 // Errors: throws std::invalid_argument when asked for fewer than 100.
 [[nodiscard]] BodyModel level_of_detail(const BodyModel& body, int num_vertices);
+
+// The same, shared; with 0 vertices the body itself.
+[[nodiscard]] std::shared_ptr<const BodyModel> level_of_detail(const std::shared_ptr<const BodyModel>& body,
+                                                               int num_vertices);
 
 // The .body file: everything above, compact and little-endian (docs/formats.md).
 // Errors: missing, empty, truncated, wrong magic or version, checksum; each names the file.

@@ -48,16 +48,5 @@ TEST(Flesh, OutermostPointsReachTheEndsOfTheBody) {
   EXPECT_LT((highest - Eigen::Vector3d(0.15, 1.5, 0.15)).norm(), 1e-4);
 }
 
-TEST(PointMotion, AgreesWithPointJacobian) {
-  const BodyModel body = make_test_body();
-  const std::vector<double> pose = {0.1, 0.6, -0.2, 0.8, 0.3, -0.2, 0.5, 0.1};
-  const PointMotion motion(body.skeleton, pose);
-  const Eigen::Vector3d x = motion.position(2, {0.1, 0.2, 0.3}), direction(0.3, -1, 2);
-  Eigen::VectorXd derivative = Eigen::VectorXd::Zero(8);
-  motion.add_derivative(2, x, direction, derivative);
-  const auto jacobian = body.skeleton.point_jacobian(pose, body.skeleton.forward_kinematics(pose), 2, x);
-  EXPECT_TRUE(derivative.isApprox(jacobian.transpose() * direction, 1e-12));
-}
-
 }  // namespace
 }  // namespace silpose

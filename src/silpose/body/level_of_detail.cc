@@ -52,4 +52,8 @@ BodyModel level_of_detail(const BodyModel& body, int num_vertices) {
   return out;
 }
 
+std::shared_ptr<const BodyModel> level_of_detail(const std::shared_ptr<const BodyModel>& body, int num_vertices) {
+  return num_vertices == 0 ? body : std::make_shared<const BodyModel>(level_of_detail(*body, num_vertices));
+}
+
 }  // namespace silpose

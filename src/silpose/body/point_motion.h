@@ -1,5 +1,5 @@
-// PointMotion: how points that are fixed to joints move with the pose.
-// Threads: a value; const functions are safe.
+// PointMotion: how points that are fixed to joints move with the pose: positions and derivatives by it, of as many
+// points as wanted at the price of one forward kinematics. Threads: a value; const functions are safe.
 #pragma once
 
 #include <Eigen/Core>
@@ -12,28 +12,23 @@ namespace silpose {
 
 class PointMotion {
  public:
-  PointMotion(const Skeleton& skeleton, std::span<const double> pose)  // keeps a reference to the skeleton
-      : skeleton_(&skeleton),
-        world_from_joint_(skeleton.forward_kinematics(pose)),
-        axes_(skeleton.dof_axes(pose, world_from_joint_)) {}
+  // At a pose [D]; keeps a reference to the skeleton. Errors: throws std::invalid_argument for a pose of another size.
+  PointMotion(const Skeleton& skeleton, std::span<const double> pose);
 
+  // [J] where each joint's coordinate frame is.
+  [[nodiscard]] std::span<const Rigid3> world_from_joint() const { return world_from_joint_; }
+
+  // In world coordinates, metres.
   [[nodiscard]] Eigen::Vector3d position(int joint_idx, const Eigen::Vector3d& x_in_joint) const {
     return world_from_joint_[static_cast<size_t>(joint_idx)] * x_in_joint;
   }
 
+  // d x / d pose [3, D] of a point at `x` in the world: metres per radian, or per metre.
+  [[nodiscard]] Eigen::Matrix3Xd jacobian(int joint_idx, const Eigen::Vector3d& x) const;
+
   // derivative [D] += d (direction . x) / d pose, for a point at `x` in the world.
   void add_derivative(int joint_idx, const Eigen::Vector3d& x, const Eigen::Vector3d& direction,
-                      Eigen::Ref<Eigen::VectorXd> derivative) const {
-    const auto joints = skeleton_->joints();
-    const auto dofs = skeleton_->dofs();
-    for (int j = joint_idx; j >= 0; j = joints[static_cast<size_t>(j)].parent_idx) {
-      const Eigen::Vector3d arm = x - world_from_joint_[static_cast<size_t>(j)].translation;
-      const Eigen::Vector3d turning = arm.cross(direction);
-      for (const int d : joints[static_cast<size_t>(j)].dof_indices) {
-        derivative[d] += axes_.col(d).dot(dofs[static_cast<size_t>(d)].is_translation ? direction : turning);
-      }
-    }
-  }
+                      Eigen::Ref<Eigen::VectorXd> derivative) const;
 
  private:
   const Skeleton* skeleton_;

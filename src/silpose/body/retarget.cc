@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "silpose/base/check.h"
+#include "silpose/body/point_motion.h"
 #include "silpose/body/retarget_source.h"
 
 namespace silpose {
@@ -223,7 +224,8 @@ class Retargeter {
   [[nodiscard]] System linearise(const Target& target, std::span<const double> pose,
                                  std::span<const double> last) const {
     const auto num_dofs = static_cast<Eigen::Index>(pose.size());
-    const std::vector<Rigid3> joints = skeleton_.forward_kinematics(pose);
+    const PointMotion motion(skeleton_, pose);
+    const std::span<const Rigid3> joints = motion.world_from_joint();
     System system{Eigen::MatrixXd::Zero(num_dofs, num_dofs), Eigen::VectorXd::Zero(num_dofs), 0};
     for (size_t s = 0; s < segments_.size(); ++s) {
       const Segment& segment = segments_[s];
@@ -232,8 +234,7 @@ class Retargeter {
       const Vector3d direction = (x1 - x0) / length;
       const Vector3d residual = direction - target.directions[s];
       const Eigen::Matrix3Xd jacobian = (Matrix3d::Identity() - direction * direction.transpose()) / length *
-                                        (skeleton_.point_jacobian(pose, joints, segment.to_idx, x1) -
-                                         skeleton_.point_jacobian(pose, joints, segment.from_idx, x0));
+                                        (motion.jacobian(segment.to_idx, x1) - motion.jacobian(segment.from_idx, x0));
       system.normal.noalias() += segment.weight * jacobian.transpose() * jacobian;
       system.gradient.noalias() += segment.weight * jacobian.transpose() * residual;
       system.cost += segment.weight * residual.squaredNorm();

@@ -28,6 +28,13 @@ void turn(Eigen::Matrix3d& rotation, int cardinal, double sign, const Eigen::Vec
 
 }  // namespace
 
+std::string_view without_side(std::string_view name) {
+  for (const std::string_view side : {"right_", "left_"}) {
+    if (name.starts_with(side)) return name.substr(side.size());
+  }
+  return name;
+}
+
 Skeleton::Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof> dofs)
     : name_(std::move(name)), joints_(std::move(joints)), dofs_(std::move(dofs)) {
   std::vector<int> uses(dofs_.size(), 0);
@@ -117,40 +124,21 @@ std::vector<Rigid3> Skeleton::forward_kinematics(std::span<const double> pose) c
   return world_from_joint;
 }
 
-void Skeleton::axes_of_joint(std::span<const double> pose, std::span<const Rigid3> world_from_joint, int joint_idx,
-                             Eigen::Matrix3Xd& axes) const {
-  const int parent = joints_[joint_idx].parent_idx;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  if (parent >= 0) rotation = world_from_joint[parent].rotation;
-  for (size_t step = step_start_[joint_idx]; step < step_start_[joint_idx + 1]; ++step) {
-    const Step& s = steps_[step];
-    axes.col(s.dof_idx) = rotation * dofs_[s.dof_idx].axis;
-    if (!s.is_translation) turn(rotation, s.cardinal, s.sign, dofs_[s.dof_idx].axis, pose[s.dof_idx]);
-  }
-}
-
 Eigen::Matrix3Xd Skeleton::dof_axes(std::span<const double> pose, std::span<const Rigid3> world_from_joint) const {
   check(pose.size() == dofs_.size() && world_from_joint.size() == joints_.size(), "dof_axes: {} values, {} transforms",
         pose.size(), world_from_joint.size());
   Eigen::Matrix3Xd axes(3, num_dofs());
-  for (int j = 0; j < num_joints(); ++j) axes_of_joint(pose, world_from_joint, j, axes);
-  return axes;
-}
-
-Eigen::Matrix3Xd Skeleton::point_jacobian(std::span<const double> pose, std::span<const Rigid3> world_from_joint,
-                                          int joint_idx, const Eigen::Vector3d& x_in_world) const {
-  check(pose.size() == dofs_.size() && world_from_joint.size() == joints_.size(),
-        "point_jacobian: {} values, {} transforms", pose.size(), world_from_joint.size());
-  check(joint_idx >= 0 && joint_idx < num_joints(), "point_jacobian: no joint {}", joint_idx);
-  Eigen::Matrix3Xd jacobian = Eigen::Matrix3Xd::Zero(3, num_dofs());
-  for (int j = joint_idx; j >= 0; j = joints_[j].parent_idx) {
-    axes_of_joint(pose, world_from_joint, j, jacobian);
-    const Eigen::Vector3d arm = x_in_world - world_from_joint[j].translation;
-    for (const int d : joints_[j].dof_indices) {
-      if (!dofs_[d].is_translation) jacobian.col(d) = jacobian.col(d).cross(arm).eval();
+  for (size_t j = 0; j < joints_.size(); ++j) {
+    const int parent = joints_[j].parent_idx;
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+    if (parent >= 0) rotation = world_from_joint[parent].rotation;
+    for (size_t step = step_start_[j]; step < step_start_[j + 1]; ++step) {
+      const Step& s = steps_[step];
+      axes.col(s.dof_idx) = rotation * dofs_[s.dof_idx].axis;
+      if (!s.is_translation) turn(rotation, s.cardinal, s.sign, dofs_[s.dof_idx].axis, pose[s.dof_idx]);
     }
   }
-  return jacobian;
+  return axes;
 }
 
 void Skeleton::clamp(std::span<double> pose) const {

@@ -33,6 +33,9 @@ struct Dof {
   [[nodiscard]] std::string column() const { return name + (is_translation ? "_m" : "_deg"); }
 };
 
+// A name without its leading right_ or left_.
+[[nodiscard]] std::string_view without_side(std::string_view name);
+
 struct Joint {
   std::string name;
   int parent_idx = -1;                                       // -1: the root; always < own index
@@ -59,10 +62,6 @@ class Skeleton {
   void forward_kinematics(std::span<const double> pose, std::span<Rigid3> world_from_joint) const;
   [[nodiscard]] std::vector<Rigid3> forward_kinematics(std::span<const double> pose) const;
 
-  // d x_in_world / d pose [3, D] of a point fixed to a joint. `world_from_joint` [J] comes from forward_kinematics.
-  [[nodiscard]] Eigen::Matrix3Xd point_jacobian(std::span<const double> pose, std::span<const Rigid3> world_from_joint,
-                                                int joint_idx, const Eigen::Vector3d& x_in_world) const;
-
   // The axis of every DOF in world coordinates [3, D]: what a translation moves along, what a rotation turns about (through
   // the joint's centre). `world_from_joint` [J] comes from forward_kinematics.
   [[nodiscard]] Eigen::Matrix3Xd dof_axes(std::span<const double> pose, std::span<const Rigid3> world_from_joint) const;
@@ -83,8 +82,6 @@ class Skeleton {
     double sign = 1;    // of a cardinal axis
     bool is_translation = false;
   };
-  void axes_of_joint(std::span<const double> pose, std::span<const Rigid3> world_from_joint, int joint_idx,
-                     Eigen::Matrix3Xd& axes) const;
 
   std::string name_;
   std::vector<Joint> joints_;
@@ -92,5 +89,15 @@ class Skeleton {
   std::vector<Step> steps_;
   std::vector<size_t> step_start_;  // [J + 1] steps of joint j: step_start_[j] to step_start_[j + 1]
 };
+
+// Indices of the DOF for which `predicate(const Dof&)` holds, ascending.
+template <class Predicate>
+[[nodiscard]] std::vector<int> find_dofs(const Skeleton& skeleton, const Predicate& predicate) {
+  std::vector<int> indices;
+  for (int d = 0; d < skeleton.num_dofs(); ++d) {
+    if (predicate(skeleton.dofs()[static_cast<size_t>(d)])) indices.push_back(d);
+  }
+  return indices;
+}
 
 }  // namespace silpose

@@ -146,27 +146,6 @@ TEST_F(HumanSkeleton, EqualAnglesAreMirrorImages) {
   }
 }
 
-TEST_F(HumanSkeleton, JacobianAgreesWithFiniteDifferences) {
-  Rng rng(3);
-  for (double& value : pose) value = rng.uniform(-1, 1);
-  const Eigen::Vector3d in_joint(.1, -.2, .3);
-  for (const char* name : {"head", "right_foot", "left_hand", "right_hand"}) {
-    const int j = skeleton.find_joint(name).value();
-    const std::vector<Rigid3> frames = skeleton.forward_kinematics(pose);
-    const Eigen::Matrix3Xd jacobian = skeleton.point_jacobian(pose, frames, j, frames[j] * in_joint);
-    for (size_t d = 0; d < pose.size(); ++d) {
-      constexpr double kStep = 1e-6;
-      std::vector<double> plus = pose, minus = pose;
-      plus[d] += kStep;
-      minus[d] -= kStep;
-      const Eigen::Vector3d difference = (skeleton.forward_kinematics(plus)[j] * in_joint -
-                                          skeleton.forward_kinematics(minus)[j] * in_joint) /
-                                         (2 * kStep);
-      EXPECT_LT((jacobian.col(static_cast<int>(d)) - difference).norm(), 1e-8) << name << " " << d;
-    }
-  }
-}
-
 TEST_F(HumanSkeleton, ClampsAnglesWrapsTheRootAndLeavesPlaces) {
   pose[0] = 50;
   turn("root_ry", 200);

@@ -1,7 +1,7 @@
 #include "silpose/body/stretchable.h"
 
 #include <algorithm>
-#include <string_view>
+#include <string>
 #include <utility>
 
 #include "silpose/base/check.h"
@@ -9,23 +9,20 @@
 namespace silpose {
 namespace {
 
-std::string_view without_side(std::string_view name) {
-  for (const std::string_view side : {"right_", "left_"}) {
-    if (name.starts_with(side)) return name.substr(side.size());
-  }
-  return name;
-}
+constexpr double kShortestBone = 0.08;  // of the body's height: shorter bones stay as they are
+// Deviations, relative to a bone's length: of the whole body's size, of each pair of bones, between right and left.
+constexpr double kSize = 0.02, kBone = 0.045, kSide = 0.005;
 
 }  // namespace
 
-BodyModel stretchable(const BodyModel& body, const StretchOptions& options) {
+BodyModel stretchable(const BodyModel& body) {
   const Skeleton& skeleton = body.skeleton;
   std::vector<Joint> joints(skeleton.joints().begin(), skeleton.joints().end());
   std::vector<Dof> dofs(skeleton.dofs().begin(), skeleton.dofs().end());
   for (size_t j = 0; j < joints.size(); ++j) {
     const double length = joints[j].offset_in_parent.norm();
-    if (joints[j].parent_idx < 0 || length < options.shortest_bone * body.height_m) continue;
-    const double limit = 3 * length * (options.size + options.bone);
+    if (joints[j].parent_idx < 0 || length < kShortestBone * body.height_m) continue;
+    const double limit = 3 * length * (kSize + kBone);
     joints[j].dof_indices.insert(joints[j].dof_indices.begin(), static_cast<int>(dofs.size()));
     dofs.push_back({.name = joints[j].name + "_length",
                     .joint_idx = static_cast<int>(j),
@@ -40,8 +37,8 @@ BodyModel stretchable(const BodyModel& body, const StretchOptions& options) {
   return out;
 }
 
-BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths, const StretchOptions& options) {
-  const Skeleton stretched = stretchable(body, options).skeleton;
+BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths) {
+  const Skeleton stretched = stretchable(body).skeleton;
   const std::vector<int> shape = shape_dofs(stretched);
   check(lengths.size() == shape.size(), "with_lengths: {} lengths for {} bones", lengths.size(), shape.size());
   const Skeleton& skeleton = body.skeleton;
@@ -82,14 +79,10 @@ BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths, c
 }
 
 std::vector<int> shape_dofs(const Skeleton& skeleton) {
-  std::vector<int> indices;
-  for (int d = 0; d < skeleton.num_dofs(); ++d) {
-    if (skeleton.dofs()[static_cast<size_t>(d)].is_shape) indices.push_back(d);
-  }
-  return indices;
+  return find_dofs(skeleton, [](const Dof& dof) { return dof.is_shape; });
 }
 
-Eigen::MatrixXd stretch_covariance(const Skeleton& skeleton, const StretchOptions& options) {
+Eigen::MatrixXd stretch_covariance(const Skeleton& skeleton) {
   const std::vector<int> indices = shape_dofs(skeleton);
   const auto S = std::ssize(indices);
   Eigen::MatrixXd covariance(S, S);
@@ -102,9 +95,9 @@ Eigen::MatrixXd stretch_covariance(const Skeleton& skeleton, const StretchOption
     for (Eigen::Index j = 0; j < S; ++j) {
       const std::string& a = skeleton.dofs()[static_cast<size_t>(indices[static_cast<size_t>(i)])].name;
       const std::string& b = skeleton.dofs()[static_cast<size_t>(indices[static_cast<size_t>(j)])].name;
-      double relative = options.size * options.size;
-      if (without_side(a) == without_side(b)) relative += options.bone * options.bone;
-      if (i == j) relative += options.side * options.side;
+      double relative = kSize * kSize;
+      if (without_side(a) == without_side(b)) relative += kBone * kBone;
+      if (i == j) relative += kSide * kSide;
       covariance(i, j) = relative * length(i) * length(j);
     }
   }

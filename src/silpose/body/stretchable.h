@@ -11,23 +11,17 @@
 
 namespace silpose {
 
-struct StretchOptions {
-  double shortest_bone = 0.08;  // of the body's height: shorter bones stay as they are
-  // Deviations, relative to a bone's length: of the whole body's size, of each pair of bones, between right and left.
-  double size = 0.02, bone = 0.045, side = 0.005;
-};
-
 // The lengths are called as the bone's outer joint: "right_shin_length". Metres, 0: as built; limits are three
 // deviations.
-BodyModel stretchable(const BodyModel& body, const StretchOptions& options = {});
+BodyModel stretchable(const BodyModel& body);
 
 // Prior covariance [S, S] of the lengths, in DOF order. Shapes: S shape DOF of a skeleton made by stretchable().
-Eigen::MatrixXd stretch_covariance(const Skeleton& skeleton, const StretchOptions& options = {});
+Eigen::MatrixXd stretch_covariance(const Skeleton& skeleton);
 
 // The body whose bones are longer by `lengths` [S] metres than they were when stretchable(body) was made, in the order
 // of shape_dofs(): an ordinary body of the same skeleton otherwise, for any pose of the first. Its stature changes with
 // it. Errors: throws std::invalid_argument for another number of lengths, or a bone that would vanish.
-BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths, const StretchOptions& options = {});
+BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths);
 
 // Indices of the shape DOF.
 std::vector<int> shape_dofs(const Skeleton& skeleton);

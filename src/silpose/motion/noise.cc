@@ -34,13 +34,6 @@ constexpr NoiseRow kHumanAcceleration[] = {
     {"upper_arm_rz", 2}, {"forearm_rx", 2},  {"forearm_ry", 1.5}, {"hand_rx", 1.5},   {"hand_rz", 1.5},
 };
 
-std::string_view without_side(std::string_view name) {
-  for (const std::string_view side : {"right_", "left_"}) {
-    if (name.starts_with(side)) return name.substr(side.size());
-  }
-  return name;
-}
-
 // In degrees or metres.
 double typical_deviation(const Dof& dof) {
   for (const NoiseRow& row : kHumanNoise) {

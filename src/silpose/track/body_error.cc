@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "silpose/body/stretchable.h"
+#include "silpose/track/plausibility.h"
 #include "silpose/track/pose_estimate.h"
 
 namespace silpose {
@@ -12,8 +13,6 @@ namespace {
 
 // Outline noise (in units of pixel_unit^3) up to which the body counts as right, and from which on as any other's.
 constexpr double kRightBody = 2, kAnyBody = 20;
-// The pull to rest that holds what the silhouette does not, as at the start of a track.
-constexpr double kRestWeight = 4;
 
 // 0 to 1, the cleanest camera's: what fits from one side may still be wrong, but not by much.
 double wrongness(const CoverageEvidence& evidence) {
@@ -48,9 +47,7 @@ BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::s
   const Eigen::MatrixXd hessian = likelihood_->linearise(evidence, Blur::k4, stretched, scratch).hessian;
   Eigen::MatrixXd held = hessian.topLeftCorner(D, D);
   for (Eigen::Index d = 0; d < D; ++d) {
-    const Dof& dof = body.skeleton.dofs()[static_cast<size_t>(d)];
-    const double half_range = 0.5 * (dof.upper - dof.lower);
-    held(d, d) += dof.is_translation || dof.joint_idx == 0 ? 1e-3 : kRestWeight / (half_range * half_range);
+    held(d, d) += std::max(1e-3, rest_information(body.skeleton.dofs()[static_cast<size_t>(d)], kFirmRest));
   }
   // The pose answers to a change of lengths so that the silhouette stays where it is, as far as it can.
   Eigen::MatrixXd answer(D + S, S);

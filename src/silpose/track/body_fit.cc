@@ -11,6 +11,7 @@
 #include "silpose/base/parallel.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/levenberg.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/plausibility.h"
 #include "silpose/track/pose_fit.h"
@@ -23,9 +24,10 @@ using Eigen::VectorXd;
 
 constexpr FitStage kStages[] = {{Blur::k8, 6}, {Blur::k4, 6}};
 constexpr int kRounds = 2;  // how good a fit can be tells how much the silhouettes are worth: the first round finds out
-constexpr double kFirstDamping = 1e-3, kLessDamping = 0.2, kMoreDamping = 8, kMostDamping = 1e4;
-constexpr double kSmallestGain = 1e-3;  // of the cost, relative: less ends a stage
-constexpr double kMaxRotation = 0.35;   // radians a step
+constexpr SmallestGain kSmallestGain{.relative = 1e-3};
+constexpr int kVertices = 3000;        // of the mesh that is compared
+constexpr double kRestWeight = 0.2;    // plausibility.h
+constexpr double kMaxRotation = 0.35;  // radians a step
 
 // The unknowns: lengths [S] of all instants, and a pose [D] each.
 struct Unknowns {
@@ -43,14 +45,19 @@ struct Linearised {
   std::vector<MatrixXd> mixed;     // [T][S, D]
 };
 
+struct Point {
+  Unknowns unknowns;
+  Linearised equations;
+  [[nodiscard]] double cost() const { return equations.cost; }
+};
+
 class Problem {
  public:
   Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
-          std::vector<CoverageEvidence> evidence, double rest_weight)
+          std::vector<CoverageEvidence> evidence)
       : likelihood_(likelihood),
         plausibility_(plausibility),
         evidence_(std::move(evidence)),
-        rest_weight_(rest_weight),
         information_(stretch_covariance(likelihood.body().skeleton).inverse()) {
     const std::vector<int> shape = shape_dofs(likelihood.body().skeleton);
     lower_.resize(std::ssize(shape)), upper_.resize(std::ssize(shape));
@@ -96,7 +103,7 @@ class Problem {
         VectorXd pose(D + S);
         pose << at.poses[t], at.lengths;
         NormalEquations equations = likelihood_.linearise(evidence_[t], blur, view(pose), scratch);
-        costs[t] = equations.energy + plausibility_.add(pose, rest_weight_, equations.gradient, equations.hessian);
+        costs[t] = equations.energy + plausibility_.add(pose, kRestWeight, equations.gradient, equations.hessian);
         out.gradient[t] = equations.gradient.head(D);
         out.hessian[t] = equations.hessian.topLeftCorner(D, D);
         out.hessian[t].diagonal().array() += 1e-6;
@@ -154,9 +161,8 @@ class Problem {
   const CoverageLikelihood& likelihood_;
   const Plausibility& plausibility_;
   std::vector<CoverageEvidence> evidence_;  // [T]
-  double rest_weight_;
-  MatrixXd information_;    // [S, S] of the lengths' prior
-  VectorXd lower_, upper_;  // [S] limits of the lengths
+  MatrixXd information_;                    // [S, S] of the lengths' prior
+  VectorXd lower_, upper_;                  // [S] limits of the lengths
 };
 
 }  // namespace
@@ -174,45 +180,35 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
   }
   if (usable.empty()) return std::nullopt;
 
-  const auto stretched = std::make_shared<const BodyModel>(stretchable(level_of_detail(*body, options.num_vertices)));
+  const auto stretched = std::make_shared<const BodyModel>(stretchable(level_of_detail(*body, kVertices)));
   const CoverageLikelihood likelihood(stretched, cameras);
   const std::vector<int> shape = shape_dofs(stretched->skeleton);
   const auto S = std::ssize(shape);
-  Unknowns at{VectorXd::Zero(S), {}};
+  Point at{{VectorXd::Zero(S), {}}, {}};
   std::vector<CoverageEvidence> evidence;
   const size_t count = std::min(options.num_instants, usable.size());
   for (size_t i = 0; i < count; ++i) {
     const size_t t = usable[(2 * i + 1) * usable.size() / (2 * count)];
-    at.poses.emplace_back(Eigen::Map<const VectorXd>(poses[t].data(), std::ssize(poses[t])));
+    at.unknowns.poses.emplace_back(Eigen::Map<const VectorXd>(poses[t].data(), std::ssize(poses[t])));
     evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k4));
   }
-  const auto proceeds = [&] { return !proceed || proceed(); };
   const Plausibility plausibility(stretched, options.floor);
-  Problem problem(likelihood, plausibility, std::move(evidence), options.rest_weight);
-  Linearised linearised;
+  Problem problem(likelihood, plausibility, std::move(evidence));
   for (int round = 0; round < kRounds; ++round) {
-    problem.estimate_noise(at);
+    problem.estimate_noise(at.unknowns);
     for (const FitStage& stage : kStages) {
-      linearised = problem.linearise(at, stage.blur);
-      double damping = kFirstDamping;
-      for (int i = 0; i < stage.max_iterations && damping < kMostDamping && proceeds(); ++i) {
-        Unknowns next = problem.stepped(at, linearised, damping);
-        Linearised there = problem.linearise(next, stage.blur);
-        const double gain = linearised.cost - there.cost;
-        if (gain > 0) {
-          at = std::move(next);
-          linearised = std::move(there);
-          damping *= kLessDamping;
-        } else {
-          damping *= kMoreDamping;
-        }
-        if (std::abs(gain) < kSmallestGain * linearised.cost) break;
-      }
+      at.equations = problem.linearise(at.unknowns, stage.blur);
+      descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) -> std::optional<Point> {
+        if (proceed && !proceed()) return std::nullopt;
+        Point next{problem.stepped(from.unknowns, from.equations, damping), {}};
+        next.equations = problem.linearise(next.unknowns, stage.blur);
+        return next;
+      });
     }
   }
   BodyFit fit;
-  fit.lengths.assign(at.lengths.begin(), at.lengths.end());
-  const MatrixXd covariance = Problem::reduce(linearised, 0).hessian.inverse();
+  fit.lengths.assign(at.unknowns.lengths.begin(), at.unknowns.lengths.end());
+  const MatrixXd covariance = Problem::reduce(at.equations, 0).hessian.inverse();
   for (Eigen::Index s = 0; s < S; ++s) fit.deviations.push_back(std::sqrt(std::max(covariance(s, s), 0.0)));
   for (const int d : shape) fit.names.push_back(stretched->skeleton.dofs()[static_cast<size_t>(d)].name);
   BodyModel fitted = with_lengths(*body, fit.lengths);

@@ -20,8 +20,6 @@ namespace silpose {
 
 struct BodyFitOptions {
   size_t num_instants = 16;  // taken from the clip, evenly: neighbours tell the same
-  int num_vertices = 3000;   // of the mesh that is compared
-  double rest_weight = 0.2;  // plausibility.h
   bool floor = false;        // nothing lies below it
 };
 

@@ -30,8 +30,6 @@ constexpr double kTwoAtOnce = 0.3;  // share of the random limbs that come in pa
 // does an E, after as many rounds, that is far more than is left elsewhere.
 constexpr double kStaleCost = 0.97, kHopelessRatio = 5, kHopeless = 100;
 constexpr int kStaleRounds = 2;
-// Of the pull to rest: joints a quarter of their range off cost 1. It tells most fronts from backs.
-constexpr double kRestWeight = 4;
 
 struct Blob {
   double area = 0;
@@ -109,8 +107,9 @@ void fit_all(const Sight& sight, std::span<const FitStage> stages, std::vector<C
     CoverageLikelihood::Scratch scratch(sight.likelihood);
     for (size_t i = begin; i < end; ++i) {
       Candidate& c = candidates[i];
+      // The pull to rest tells most fronts from backs.
       c.fit = fit_pose(sight.likelihood, sight.plausibility, sight.evidence, c.prior, c.fit.pose, stages,
-                       {.rest_weight = kRestWeight}, scratch);
+                       {.rest_weight = kFirmRest}, scratch);
     }
   });
 }

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "silpose/body/point_motion.h"
+
 namespace silpose {
 namespace {
 
@@ -41,10 +43,6 @@ std::vector<int> limb_of_joint(const Skeleton& skeleton, std::vector<Limb>& limb
   return limb_of;
 }
 
-std::string_view name_without_side(std::string_view name) {
-  return name.starts_with("right_") ? name.substr(6) : name.starts_with("left_") ? name.substr(5) : name;
-}
-
 // Ends of the limb's segments, from its first joint that turns: joint centres, then the end point of the last joint.
 struct LimbPoint {
   int joint_idx;
@@ -76,15 +74,15 @@ double reach_for(const Skeleton& skeleton, const Limb& limb, std::span<const Lim
   const auto num_dofs = static_cast<Eigen::Index>(limb.dofs.size());
   double largest = 0;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
-    const auto world_from_joint = skeleton.forward_kinematics(pose);
+    const PointMotion motion(skeleton, pose);
     Eigen::MatrixXd normal = kHold * Eigen::MatrixXd::Identity(num_dofs, num_dofs);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(num_dofs);
     largest = 0;
     for (size_t i = 1; i < points.size(); ++i) {
-      const Eigen::Vector3d x = world_from_joint[static_cast<size_t>(points[i].joint_idx)] * points[i].offset;
+      const Eigen::Vector3d x = motion.position(points[i].joint_idx, points[i].offset);
       const Eigen::Vector3d off = targets[i] - x;
       largest = std::max(largest, off.norm());
-      const Eigen::Matrix3Xd all = skeleton.point_jacobian(pose, world_from_joint, points[i].joint_idx, x);
+      const Eigen::Matrix3Xd all = motion.jacobian(points[i].joint_idx, x);
       const Eigen::Matrix3Xd jacobian = all(Eigen::all, limb.dofs);
       normal += jacobian.transpose() * jacobian;
       right += jacobian.transpose() * off;
@@ -124,7 +122,7 @@ std::vector<std::vector<int>> limb_blocks(const Skeleton& skeleton) {
 }
 
 std::vector<std::pair<size_t, size_t>> alike_limbs(const Skeleton& skeleton, std::span<const Limb> limbs) {
-  const auto name = [&](int d) { return name_without_side(skeleton.dofs()[static_cast<size_t>(d)].name); };
+  const auto name = [&](int d) { return without_side(skeleton.dofs()[static_cast<size_t>(d)].name); };
   std::vector<std::pair<size_t, size_t>> pairs;
   for (size_t i = 0; i < limbs.size(); ++i) {
     for (size_t j = i + 1; j < limbs.size(); ++j) {

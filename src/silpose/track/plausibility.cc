@@ -32,9 +32,7 @@ double add_limits(const Skeleton& skeleton, const VectorXd& pose, double rest_we
       gradient[d] += kLimit * beyond;
       hessian(d, d) += kLimit;
     }
-    if (rest_weight > 0 && dof.joint_idx != 0) {
-      const double half_range = 0.5 * (dof.upper - dof.lower);
-      const double weight = rest_weight / (half_range * half_range);
+    if (const double weight = rest_information(dof, rest_weight); weight > 0) {
       const double off = pose[d] - std::clamp(0.0, dof.lower, dof.upper);
       cost += weight * off * off;
       gradient[d] += weight * off;
@@ -80,6 +78,12 @@ std::vector<FleshSphere> bounds_of(size_t num_joints, const std::vector<FleshSph
 }
 
 }  // namespace
+
+double rest_information(const Dof& dof, double rest_weight) {
+  if (dof.is_translation || dof.is_periodic || dof.joint_idx == 0) return 0;
+  const double half_range = 0.5 * (dof.upper - dof.lower);
+  return rest_weight / (half_range * half_range);
+}
 
 Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : body_(std::move(body)) {
   check(body_ != nullptr, "Plausibility: no body");

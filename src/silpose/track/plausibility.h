@@ -14,6 +14,13 @@
 
 namespace silpose {
 
+// How firmly a start holds what a silhouette does not show: joints a quarter of their range off rest cost 1.
+inline constexpr double kFirmRest = 4;
+
+// Information of the pull to rest on a DOF: `rest_weight` over half its range squared; 0 for the root, translations,
+// and joints that turn freely.
+[[nodiscard]] double rest_information(const Dof& dof, double rest_weight);
+
 class Plausibility {
  public:
   Plausibility(std::shared_ptr<const BodyModel> body, bool floor);

@@ -1,5 +1,6 @@
 #include "silpose/track/pose_estimate.h"
 
+#include "silpose/body/point_motion.h"
 #include "silpose/filter/estimate.h"
 
 namespace silpose {
@@ -11,11 +12,7 @@ constexpr double kClusterBandwidth = 2;
 }  // namespace
 
 std::vector<int> periodic_dofs(const Skeleton& skeleton) {
-  std::vector<int> dofs;
-  for (int d = 0; d < skeleton.num_dofs(); ++d) {
-    if (skeleton.dofs()[static_cast<size_t>(d)].is_periodic) dofs.push_back(d);
-  }
-  return dofs;
+  return find_dofs(skeleton, [](const Dof& dof) { return dof.is_periodic; });
 }
 
 std::vector<double> pose_estimate(const Skeleton& skeleton, const ParticleSet& particles, Estimate kind,
@@ -44,13 +41,13 @@ std::vector<double> pose_estimate(const Skeleton& skeleton, const ParticleSet& p
 
 std::vector<Eigen::Vector3d> landmark_variances(const BodyModel& body, std::span<const double> pose,
                                                 const Eigen::MatrixXd& covariance) {
-  const auto world_from_joint = body.skeleton.forward_kinematics(pose);
+  const PointMotion motion(body.skeleton, pose);
   const auto landmarks = landmark_positions(body, pose);
-  const size_t num_joints = world_from_joint.size();
+  const size_t num_joints = motion.world_from_joint().size();
   std::vector<Eigen::Vector3d> variances;
   for (size_t l = 0; l < landmarks.size(); ++l) {
     const int joint = l < num_joints ? static_cast<int>(l) : body.end_points[l - num_joints].joint_idx;
-    const Eigen::Matrix3Xd jacobian = body.skeleton.point_jacobian(pose, world_from_joint, joint, landmarks[l]);
+    const Eigen::Matrix3Xd jacobian = motion.jacobian(joint, landmarks[l]);
     variances.emplace_back((jacobian * covariance).cwiseProduct(jacobian).rowwise().sum());
   }
   return variances;

@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
+#include "silpose/track/levenberg.h"
 
 namespace silpose {
 namespace {
 
-constexpr double kFirstDamping = 1e-3, kLessDamping = 0.2, kMoreDamping = 8, kMostDamping = 1e3;
-constexpr double kSmallestGain = 0.05;  // of the cost: less ends a stage
+constexpr SmallestGain kSmallestGain{.absolute = 0.05};
 
 struct Point {
   Eigen::VectorXd pose;
@@ -70,24 +70,15 @@ PoseFit fit_pose(const CoverageLikelihood& likelihood, const Plausibility& plaus
   for (const FitStage& stage : stages) {
     at = evaluate(likelihood, plausibility, evidence, prior, stage.blur, std::move(at.pose), options.rest_weight,
                   scratch);
-    double damping = kFirstDamping;
-    for (int iteration = 0; iteration < stage.max_iterations && damping < kMostDamping; ++iteration) {
-      Eigen::MatrixXd damped = at.hessian;
+    descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) {
+      Eigen::MatrixXd damped = from.hessian;
       damped.diagonal() *= 1 + damping;
       damped.diagonal().array() += 1e-9;
-      Eigen::VectorXd step = -damped.ldlt().solve(at.gradient);
+      Eigen::VectorXd step = -damped.ldlt().solve(from.gradient);
       limit_step(skeleton, options, step);
-      Point next =
-          evaluate(likelihood, plausibility, evidence, prior, stage.blur, at.pose + step, options.rest_weight, scratch);
-      const double gain = at.cost() - next.cost();
-      if (gain > 0) {
-        at = std::move(next);
-        damping *= kLessDamping;
-      } else {
-        damping *= kMoreDamping;
-      }
-      if (std::abs(gain) < kSmallestGain) break;
-    }
+      return std::optional(evaluate(likelihood, plausibility, evidence, prior, stage.blur, from.pose + step,
+                                    options.rest_weight, scratch));
+    });
   }
   // Exactly inside the limits, whole turns kept: a clamped DOF moves by less than the soft limit's width.
   clamp_to_limits(skeleton, at.pose);

@@ -8,6 +8,7 @@
 #include "silpose/base/parallel.h"
 #include "silpose/motion/noise.h"
 #include "silpose/track/footing.h"
+#include "silpose/track/levenberg.h"
 
 namespace silpose {
 namespace {
@@ -15,8 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kFirstDamping = 1e-3, kLessDamping = 0.2, kMoreDamping = 8, kMostDamping = 1e4;
-constexpr double kSmallestGain = 1e-4;  // of the cost, relative: less ends a stage
+constexpr SmallestGain kSmallestGain{.relative = 1e-4};
 constexpr double kMaxRotation = 0.35, kMaxTranslation = 0.3;
 
 // A symmetric block tridiagonal matrix: blocks of two frames each, so that accelerations, which tie three frames, reach
@@ -95,12 +95,18 @@ class BlockTridiagonal {
   std::vector<Eigen::LDLT<MatrixXd>> factors_;
 };
 
-// One frame's part, and those of motion, at the current poses.
+// What frames and motion say at some poses.
 struct Linearised {
   double cost = 0;
   std::vector<VectorXd> gradient;  // [T] of half the cost
   std::vector<MatrixXd> hessian;   // [T] of the frames alone, and what stands in them
   std::vector<MatrixXd> across;    // [T] of what stands: from a frame (rows) to the one before
+};
+
+struct Point {
+  std::vector<VectorXd> poses;
+  Linearised equations;
+  [[nodiscard]] double cost() const { return equations.cost; }
 };
 
 class Problem {
@@ -241,43 +247,32 @@ SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibil
   const Skeleton& skeleton = likelihood.body().skeleton;
   keep_whole_turns(skeleton, poses);
   Problem problem(likelihood, plausibility, clip, seen, options);
-  Linearised at;
+  Point at{std::move(poses), {}};
   for (const FitStage& stage : options.stages) {
-    problem.find_footholds(poses);
-    at = problem.linearise(poses, stage.blur);
-    double damping = kFirstDamping;
-    for (int iteration = 0; iteration < stage.max_iterations && damping < kMostDamping; ++iteration) {
-      if (proceed && !proceed()) break;
-      BlockTridiagonal matrix = problem.normal_matrix(at);
+    problem.find_footholds(at.poses);
+    at.equations = problem.linearise(at.poses, stage.blur);
+    descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) -> std::optional<Point> {
+      if (proceed && !proceed()) return std::nullopt;
+      BlockTridiagonal matrix = problem.normal_matrix(from.equations);
       matrix.damp(damping);
       matrix.factorise();
-      const std::vector<VectorXd> step = matrix.solve(at.gradient);
-      std::vector<VectorXd> next = poses;
-      for (size_t t = 0; t < next.size(); ++t) {
-        for (Eigen::Index d = 0; d < next[t].size(); ++d) {
+      const std::vector<VectorXd> step = matrix.solve(from.equations.gradient);
+      Point next{from.poses, {}};
+      for (size_t t = 0; t < step.size(); ++t) {
+        for (Eigen::Index d = 0; d < step[t].size(); ++d) {
           const double most = skeleton.dofs()[static_cast<size_t>(d)].is_translation ? kMaxTranslation : kMaxRotation;
-          next[t][d] -= std::clamp(step[t][d], -most, most);
+          next.poses[t][d] -= std::clamp(step[t][d], -most, most);
         }
       }
-      Linearised there = problem.linearise(next, stage.blur);
-      const double gain = at.cost - there.cost;
-      if (gain > 0) {
-        poses = std::move(next);
-        at = std::move(there);
-        damping *= kLessDamping;
-      } else {
-        damping *= kMoreDamping;
-      }
-      if (std::abs(gain) < kSmallestGain * at.cost) break;
-    }
+      next.equations = problem.linearise(next.poses, stage.blur);
+      return next;
+    });
   }
-  BlockTridiagonal matrix = problem.normal_matrix(at);
+  BlockTridiagonal matrix = problem.normal_matrix(at.equations);
   matrix.factorise();
-  SmoothedPoses result{.poses = {}, .covariances = matrix.marginals(poses.size()), .cost = at.cost};
-  for (VectorXd& pose : poses) {
-    clamp_to_limits(skeleton, pose);
-    result.poses.push_back(std::move(pose));
-  }
+  SmoothedPoses result{.poses = std::move(at.poses), .covariances = {}, .cost = at.cost()};
+  result.covariances = matrix.marginals(result.poses.size());
+  for (VectorXd& pose : result.poses) clamp_to_limits(skeleton, pose);
   return result;
 }
 

@@ -48,9 +48,7 @@ class ClipTracker {
       : options_(options.resolved()), clip_(clip), progress_(progress), possible_(clip.size()), seen_(clip.size()) {
     options_.check();
     for (size_t t = 0; t < clip.size(); ++t) seen_[t] = any_has_a_say(clip[t].observations);
-    const auto body = *options_.lod_vertices == 0
-                          ? options_.body
-                          : std::make_shared<const BodyModel>(level_of_detail(*options_.body, *options_.lod_vertices));
+    const auto body = level_of_detail(options_.body, *options_.lod_vertices);
     likelihood_ = std::make_shared<const CoverageLikelihood>(body, options_.cameras);
     plausibility_ = std::make_shared<const Plausibility>(body, *options_.floor);
   }
@@ -109,8 +107,7 @@ class ClipTracker {
     const CommonPoses common(options_.body->skeleton);
     const Proposal& proposal = options_.proposal ? *options_.proposal : common;
     // Passes start anew, so a coarse mesh will do to choose.
-    const auto body =
-        std::make_shared<const BodyModel>(level_of_detail(*options_.body, *options_of_pass(options_).lod_vertices));
+    const auto body = level_of_detail(options_.body, *options_of_pass(options_).lod_vertices);
     const CoverageLikelihood likelihood(body, options_.cameras);
     const Plausibility plausibility(body, *options_.floor);
     double best = -std::numeric_limits<double>::infinity();

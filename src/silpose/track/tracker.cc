@@ -34,16 +34,12 @@ constexpr int kSeekHeadings = 3, kSeekRounds = 3;  // at a time, other ones each
 struct Tracker::Impl {
   explicit Impl(const TrackerOptions& given) : options(given.resolved()) {
     options.check();
-    const auto detail = [&](int num_vertices) {
-      return num_vertices == 0 ? options.body
-                               : std::make_shared<const BodyModel>(level_of_detail(*options.body, num_vertices));
-    };
-    const auto fine = detail(*options.lod_vertices);
+    const auto fine = level_of_detail(options.body, *options.lod_vertices);
     likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
     likelihoods.plausibility = std::make_shared<const Plausibility>(fine, *options.floor);
     if (options.num_hypotheses) {
-      likelihoods.coarse =
-          std::make_shared<const CoverageLikelihood>(detail(kRankingVertices), options.cameras, kRankingRows);
+      likelihoods.coarse = std::make_shared<const CoverageLikelihood>(level_of_detail(options.body, kRankingVertices),
+                                                                      options.cameras, kRankingRows);
     } else {
       for (const PinholeCamera& camera : options.cameras) {
         likelihoods.renderers.push_back(std::make_shared<const BatchRenderer>(fine, camera));
