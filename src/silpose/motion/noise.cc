@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 #include <string_view>
 
 #include "silpose/base/check.h"
@@ -10,14 +12,14 @@
 namespace silpose {
 namespace {
 
-struct NoiseRow {
+struct Row {
   std::string_view dof;  // without its side
   double deviation;      // degrees, or metres for translations
 };
 
 // A walker moves 45 mm a frame in a steady direction and bobs by 25 mm twice a stride; hips and knees turn by up to
 // 8 degrees a frame, of which much is found again by weighing. Twists show little in a silhouette and move little.
-constexpr NoiseRow kHumanNoise[] = {
+constexpr Row kHumanNoise[] = {
     {"root_tx", 0.020},  {"root_ty", 0.010}, {"root_tz", 0.020}, {"root_rx", 1},      {"root_ry", 2},
     {"root_rz", 1},      {"abdomen_rx", 1},  {"thorax_rx", 1},   {"thorax_ry", 2},    {"thorax_rz", 1},
     {"head_rx", 2},      {"head_ry", 2},     {"head_rz", 1},     {"thigh_rx", 4},     {"thigh_ry", 2},
@@ -26,7 +28,7 @@ constexpr NoiseRow kHumanNoise[] = {
 };
 
 // What walking, running and dancing joints do to their own velocity in 1/30 s.
-constexpr NoiseRow kHumanAcceleration[] = {
+constexpr Row kHumanAcceleration[] = {
     {"root_tx", 0.008},  {"root_ty", 0.008}, {"root_tz", 0.008}, {"root_rx", 1},      {"root_ry", 1},
     {"root_rz", 1},      {"abdomen_rx", 0.5}, {"thorax_rx", 0.75}, {"thorax_ry", 1},   {"thorax_rz", 0.75},
     {"head_rx", 1},      {"head_ry", 1},     {"head_rz", 1},     {"thigh_rx", 2},     {"thigh_ry", 1.5},
@@ -34,11 +36,23 @@ constexpr NoiseRow kHumanAcceleration[] = {
     {"upper_arm_rz", 2}, {"forearm_rx", 2},  {"forearm_ry", 1.5}, {"hand_rx", 1.5},   {"hand_rz", 1.5},
 };
 
+// How far from hanging straight down, facing ahead, people hold their joints as they stand, walk and gesture.
+constexpr Row kHumanPose[] = {
+    {"root_rx", 15},      {"root_rz", 12},      {"abdomen_rx", 10}, {"thorax_rx", 10},  {"thorax_ry", 12},
+    {"thorax_rz", 8},     {"head_rx", 15},      {"head_ry", 20},    {"head_rz", 10},    {"thigh_rx", 30},
+    {"thigh_ry", 12},     {"thigh_rz", 12},     {"shin_rx", 35},    {"foot_rx", 15},    {"upper_arm_rx", 40},
+    {"upper_arm_ry", 30}, {"upper_arm_rz", 35}, {"forearm_rx", 45}, {"forearm_ry", 25}, {"hand_rx", 15},
+    {"hand_rz", 10},
+};
+
+std::optional<double> find_row(std::span<const Row> table, const Dof& dof) {
+  const auto row = std::ranges::find(table, without_side(dof.name), &Row::dof);
+  return row == table.end() ? std::nullopt : std::optional(row->deviation);
+}
+
 // In degrees or metres.
 double typical_deviation(const Dof& dof) {
-  for (const NoiseRow& row : kHumanNoise) {
-    if (row.dof == without_side(dof.name)) return row.deviation;
-  }
+  if (const auto row = find_row(kHumanNoise, dof)) return *row;
   if (dof.is_translation) return std::abs(dof.axis.y()) > 0.5 ? 0.010 : 0.020;
   if (dof.is_periodic) return 2;
   return std::clamp(0.03 * to_degrees(dof.upper - dof.lower), 1.0, 5.0);
@@ -46,9 +60,7 @@ double typical_deviation(const Dof& dof) {
 
 // In degrees or metres.
 double typical_acceleration(const Dof& dof) {
-  for (const NoiseRow& row : kHumanAcceleration) {
-    if (row.dof == without_side(dof.name)) return row.deviation;
-  }
+  if (const auto row = find_row(kHumanAcceleration, dof)) return *row;
   if (dof.is_translation) return 0.008;
   return 0.5 * typical_deviation(dof);
 }
@@ -70,6 +82,19 @@ std::vector<double> acceleration_deviation(const Skeleton& skeleton) {
   for (const Dof& dof : skeleton.dofs()) {
     const double typical = typical_acceleration(dof);
     deviation.push_back(dof.is_translation ? typical : to_radians(typical));
+  }
+  return deviation;
+}
+
+std::vector<double> pose_deviation(const Skeleton& skeleton) {
+  std::vector<double> deviation;
+  for (const Dof& dof : skeleton.dofs()) {
+    if (const auto row = find_row(kHumanPose, dof)) {
+      deviation.push_back(to_radians(*row));
+    } else {
+      const bool anywhere = dof.is_translation || dof.is_shape || dof.is_periodic || dof.joint_idx == 0;
+      deviation.push_back(anywhere ? 0 : 0.25 * (dof.upper - dof.lower));
+    }
   }
   return deviation;
 }

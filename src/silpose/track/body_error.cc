@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "silpose/body/stretchable.h"
-#include "silpose/track/plausibility.h"
+#include "silpose/motion/noise.h"
 #include "silpose/track/pose_estimate.h"
 
 namespace silpose {
@@ -28,6 +28,7 @@ double wrongness(const CoverageEvidence& evidence) {
 
 BodyError::BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras) {
   auto stretched = std::make_shared<const BodyModel>(stretchable(body));
+  deviation_ = pose_deviation(body.skeleton);
   lengths_ = stretch_covariance(stretched->skeleton);
   likelihood_ = std::make_unique<CoverageLikelihood>(std::move(stretched), std::move(cameras));
 }
@@ -47,7 +48,8 @@ BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::s
   const Eigen::MatrixXd hessian = likelihood_->linearise(evidence, Blur::k4, stretched, scratch).hessian;
   Eigen::MatrixXd held = hessian.topLeftCorner(D, D);
   for (Eigen::Index d = 0; d < D; ++d) {
-    held(d, d) += std::max(1e-3, rest_information(body.skeleton.dofs()[static_cast<size_t>(d)], kFirmRest));
+    const double deviation = deviation_[static_cast<size_t>(d)];
+    held(d, d) += deviation > 0 ? 1 / (deviation * deviation) : 1e-3;
   }
   // The pose answers to a change of lengths so that the silhouette stays where it is, as far as it can.
   Eigen::MatrixXd answer(D + S, S);

@@ -33,6 +33,7 @@ class BodyError {
  private:
   std::unique_ptr<CoverageLikelihood> likelihood_;  // of the stretchable body
   Eigen::MatrixXd lengths_;                         // [S, S] prior covariance
+  std::vector<double> deviation_;                   // [D] motion/noise.h's pose_deviation
 };
 
 }  // namespace silpose

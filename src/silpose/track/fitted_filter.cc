@@ -37,10 +37,14 @@ FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const 
 void FittedFilter::start(std::span<const StartingPose> starts) {
   mixture_.start(poses_of(starts));
   noise_.clear();
+  found_anew_ = true;
   report();
 }
 
-void FittedFilter::add(std::span<const StartingPose> starts) { mixture_.add(poses_of(starts)); }
+void FittedFilter::add(std::span<const StartingPose> starts) {
+  mixture_.add(poses_of(starts));
+  found_anew_ = true;
+}
 
 FilterReport FittedFilter::step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) {
   const Stopwatch stopwatch;
@@ -63,22 +67,22 @@ FilterReport FittedFilter::coast(double dt_s) {
 
 void FittedFilter::update_noise(const CoverageEvidence& evidence) {
   CoverageLikelihood::Scratch scratch(*fine_);
-  const auto pose_of = [](const GaussianComponent& hypothesis) {
-    return std::vector<double>(hypothesis.pose().begin(), hypothesis.pose().end());
+  const auto noise_at = [&](const GaussianComponent& hypothesis) {
+    const Eigen::VectorXd pose = hypothesis.pose();
+    return fine_->estimate_noise(evidence, view(pose), scratch);
   };
-  if (noise_.empty()) {  // at the start the best of what there is says how good a fit can be
-    for (const GaussianComponent& hypothesis : mixture_.hypotheses()) {
-      const std::vector<double> found = fine_->estimate_noise(evidence, pose_of(hypothesis), scratch);
-      if (noise_.empty()) noise_ = found;
-      for (size_t c = 0; c < found.size(); ++c) noise_[c] = std::min(noise_[c], found[c]);
+  std::vector<double> found = noise_at(mixture_.hypotheses().front());
+  if (found_anew_) {  // the best of what there is says how good a fit can be
+    for (const GaussianComponent& hypothesis : mixture_.hypotheses().subspan(1)) {
+      const std::vector<double> other = noise_at(hypothesis);
+      for (size_t c = 0; c < found.size(); ++c) found[c] = std::min(found[c], other[c]);
     }
-    for (double& noise : noise_) noise = noise > 0 ? noise : CoverageLikelihood::kExactNoise;
-    return;
   }
-  const std::vector<double> found = fine_->estimate_noise(evidence, pose_of(mixture_.hypotheses().front()), scratch);
-  for (size_t c = 0; c < noise_.size(); ++c) {
-    if (found[c] > 0) noise_[c] *= std::pow(found[c] / noise_[c], 1 / kNoiseMemory);
+  noise_.resize(found.size(), CoverageLikelihood::kExactNoise);
+  for (size_t c = 0; c < found.size(); ++c) {
+    if (found[c] > 0) noise_[c] *= std::pow(found[c] / noise_[c], found_anew_ ? 1 : 1 / kNoiseMemory);
   }
+  found_anew_ = false;
 }
 
 FilterReport FittedFilter::report() {

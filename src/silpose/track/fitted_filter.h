@@ -38,6 +38,7 @@ class FittedFilter final : public PoseFilter {
   ParticleSet particles_;
   BodyError body_error_;
   BodyError::Variance from_body_;  // of the last estimate
+  bool found_anew_ = false;        // hypotheses from scratch: what the noise was taken to be before no longer counts
   std::vector<double> noise_;      // [C]; empty until the first step
 };
 

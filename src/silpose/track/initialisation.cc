@@ -107,9 +107,7 @@ void fit_all(const Sight& sight, std::span<const FitStage> stages, std::vector<C
     CoverageLikelihood::Scratch scratch(sight.likelihood);
     for (size_t i = begin; i < end; ++i) {
       Candidate& c = candidates[i];
-      // The pull to rest tells most fronts from backs.
-      c.fit = fit_pose(sight.likelihood, sight.plausibility, sight.evidence, c.prior, c.fit.pose, stages,
-                       {.rest_weight = kFirmRest}, scratch);
+      c.fit = fit_pose(sight.likelihood, sight.plausibility, sight.evidence, c.prior, c.fit.pose, stages, {}, scratch);
     }
   });
 }
@@ -165,6 +163,22 @@ std::vector<std::vector<Candidate>> by_heading(const Skeleton& skeleton, std::ve
     groups[*group].push_back(std::move(start));
   }
   return groups;
+}
+
+// How good a fit can be tells how much the differences between fits mean: more than exact masks deserve, never less.
+void set_noise(const CoverageLikelihood& likelihood, CoverageEvidence& evidence, std::vector<Candidate>& starts) {
+  CoverageLikelihood::Scratch scratch(likelihood);
+  std::vector<double> least;
+  for (const Candidate& start : starts) {
+    const std::vector<double> noise = likelihood.estimate_noise(evidence, view(start.fit.pose), scratch);
+    if (least.empty()) least = noise;
+    for (size_t c = 0; c < noise.size(); ++c) least[c] = std::min(least[c], noise[c]);
+  }
+  for (double& noise : least) noise = std::max(noise, CoverageLikelihood::kExactNoise);
+  evidence.set_noise(least);
+  for (Candidate& start : starts) {
+    start.fit.energy = likelihood.energy(evidence, Blur::k4, view(start.fit.pose), scratch);
+  }
 }
 
 struct LimbRounds {
@@ -273,6 +287,8 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   std::ranges::move(mirrored, std::back_inserter(starts));
   sort_best_first(starts);
 
+  set_noise(likelihood, evidence, starts);
+  sort_best_first(starts);
   std::vector<std::vector<Candidate>> headings = by_heading(skeleton, std::move(starts));
   starts.clear();
   double least = std::numeric_limits<double>::infinity();

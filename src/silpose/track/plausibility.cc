@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
+#include "silpose/geometry/rigid3.h"
+#include "silpose/motion/noise.h"
 
 namespace silpose {
 namespace {
@@ -13,31 +15,42 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double kLimitDeviation = 0.02;    // radians beyond a limit that cost 1
+constexpr double kRestFreedom = 2;          // degrees of freedom of Student's t
 constexpr double kOverlapDeviation = 0.02;  // metres that two spheres overlap, beyond what they do at rest
 constexpr double kYield = 0.02;             // metres that flesh gives way
 constexpr double kNeighbours = 2;           // radii: along the bones; nearer spheres are of one fold of flesh
 constexpr double kFloorDeviation = 0.02;    // metres below the floor
 constexpr double kNoFloor = 0.2;  // metres below: the floor is not where it is said to be, and no longer pushes
 
-double add_limits(const Skeleton& skeleton, const VectorXd& pose, double rest_weight, VectorXd& gradient,
-                  MatrixXd& hessian) {
+double add_limits(const Skeleton& skeleton, const VectorXd& pose, VectorXd& gradient, MatrixXd& hessian) {
   constexpr double kLimit = 1 / (kLimitDeviation * kLimitDeviation);
   double cost = 0;
   for (Eigen::Index d = 0; d < pose.size(); ++d) {
     const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
     if (dof.is_translation || dof.is_periodic) continue;
     const double beyond = pose[d] - std::clamp(pose[d], dof.lower, dof.upper);
-    if (beyond != 0) {
-      cost += kLimit * beyond * beyond;
-      gradient[d] += kLimit * beyond;
-      hessian(d, d) += kLimit;
-    }
-    if (const double weight = rest_information(dof, rest_weight); weight > 0) {
-      const double off = pose[d] - std::clamp(0.0, dof.lower, dof.upper);
-      cost += weight * off * off;
-      gradient[d] += weight * off;
-      hessian(d, d) += weight;
-    }
+    if (beyond == 0) continue;
+    cost += kLimit * beyond * beyond;
+    gradient[d] += kLimit * beyond;
+    hessian(d, d) += kLimit;
+  }
+  return cost;
+}
+
+// Student's t about rest: most poses are near it, and one that is not must not be torn back.
+double add_rest(const Skeleton& skeleton, std::span<const double> deviation, double weight, const VectorXd& pose,
+                VectorXd& gradient, MatrixXd& hessian) {
+  double cost = 0;
+  for (Eigen::Index d = 0; d < pose.size(); ++d) {
+    const double scale = deviation[static_cast<size_t>(d)] * std::sqrt(kRestFreedom);
+    if (scale == 0) continue;
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    const double off = dof.is_periodic ? wrap_angle(pose[d]) : pose[d] - std::clamp(0.0, dof.lower, dof.upper);
+    const double inverse = 1 / (scale * scale + off * off);
+    const double information = weight * (kRestFreedom + 1) * inverse;
+    cost -= weight * (kRestFreedom + 1) * std::log(scale * scale * inverse);
+    gradient[d] += information * off;
+    hessian(d, d) += information;
   }
   return cost;
 }
@@ -79,14 +92,9 @@ std::vector<FleshSphere> bounds_of(size_t num_joints, const std::vector<FleshSph
 
 }  // namespace
 
-double rest_information(const Dof& dof, double rest_weight) {
-  if (dof.is_translation || dof.is_periodic || dof.joint_idx == 0) return 0;
-  const double half_range = 0.5 * (dof.upper - dof.lower);
-  return rest_weight / (half_range * half_range);
-}
-
 Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : body_(std::move(body)) {
   check(body_ != nullptr, "Plausibility: no body");
+  deviation_ = pose_deviation(body_->skeleton);
   const Skeleton& skeleton = body_->skeleton;
   spheres_ = flesh_spheres(*body_);
   bounds_ = bounds_of(skeleton.joints().size(), spheres_);
@@ -177,7 +185,8 @@ double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, Ma
 
 double Plausibility::add(const VectorXd& pose, double rest_weight, VectorXd& gradient, MatrixXd& hessian) const {
   const PointMotion motion(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())});
-  return add_limits(body_->skeleton, pose, rest_weight, gradient, hessian) +
+  return add_limits(body_->skeleton, pose, gradient, hessian) +
+         (rest_weight > 0 ? add_rest(body_->skeleton, deviation_, rest_weight, pose, gradient, hessian) : 0) +
          add_penetration(motion, gradient, hessian) + add_floor(motion, gradient, hessian);
 }
 

@@ -14,19 +14,12 @@
 
 namespace silpose {
 
-// How firmly a start holds what a silhouette does not show: joints a quarter of their range off rest cost 1.
-inline constexpr double kFirmRest = 4;
-
-// Information of the pull to rest on a DOF: `rest_weight` over half its range squared; 0 for the root, translations,
-// and joints that turn freely.
-[[nodiscard]] double rest_information(const Dof& dof, double rest_weight);
-
 class Plausibility {
  public:
   Plausibility(std::shared_ptr<const BodyModel> body, bool floor);
 
   // Cost of a pose [D]; adds to `gradient` [D] and `hessian` [D, D] of half of it. `rest_weight` is that of the pull to
-  // rest, in units of (half a range)^-2.
+  // rest: 1 for a single pose, less for one of many that are alike.
   double add(const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
              Eigen::MatrixXd& hessian) const;
 
@@ -49,6 +42,7 @@ class Plausibility {
   double add_floor(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
 
   std::shared_ptr<const BodyModel> body_;
+  std::vector<double> deviation_;  // [D] motion/noise.h's pose_deviation
   std::vector<FleshSphere> spheres_;
   std::vector<FleshSphere> bounds_;  // [J] a sphere about all spheres of a bone
   std::vector<BonePair> pairs_;

@@ -68,6 +68,23 @@ TEST(Plausibility, GradientAgreesWithFiniteDifferences) {
   expect_exact_gradient(std::make_shared<const BodyModel>(make_test_body()));
 }
 
+TEST(Plausibility, WhatIsUnusualCostsMoreButNeverTearsBack) {
+  const Plausibility plausibility(human(), false);
+  const Skeleton& skeleton = human()->skeleton;
+  const auto cost_of = [&](const char* dof, double degrees) {
+    VectorXd pose = vector_of(standing_pose(*human()));
+    pose[*skeleton.find_dof(dof)] += to_radians(degrees);
+    return Added(plausibility, pose, 1).cost - Added(plausibility, pose, 0).cost;
+  };
+  EXPECT_EQ(cost_of("root_tx", 0), 0);
+  EXPECT_GT(cost_of("abdomen_rx", 20), 2 * cost_of("right_shin_rx", 20));  // a knee bends more than a back
+  EXPECT_GT(cost_of("root_rx", 30), 1);
+  EXPECT_NEAR(cost_of("root_rx", 330), cost_of("root_rx", -30), 1e-9);
+  EXPECT_EQ(cost_of("root_ry", 120), 0);  // any heading will do
+  const double near = cost_of("abdomen_rx", 5) - cost_of("abdomen_rx", 0);
+  EXPECT_LT(cost_of("abdomen_rx", 40), 0.5 * 64 * near);
+}
+
 TEST(Plausibility, StandingAtRestCostsNothing) {
   for (const Body& body : {human(), std::make_shared<const BodyModel>(make_test_body())}) {
     const VectorXd pose = vector_of(standing_pose(*body));

@@ -36,7 +36,7 @@ struct PoseFit {
 struct PoseFitOptions {
   double max_rotation = 0.35;    // radians a step
   double max_translation = 0.3;  // metres a step
-  double rest_weight = 0;        // of a pull to the rest pose, in units of (half a range)^-2
+  double rest_weight = 1;        // plausibility.h
 };
 
 // From `start` [D], stage by stage. Errors: throws std::invalid_argument without a stage.

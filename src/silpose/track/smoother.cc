@@ -118,6 +118,7 @@ class Problem {
         clip_(clip),
         seen_(seen),
         options_(options),
+        noise_(options.noise),
         acceleration_(acceleration_deviation(likelihood.body().skeleton)) {
     for (double& deviation : acceleration_) deviation *= options.acceleration;
   }
@@ -133,6 +134,28 @@ class Problem {
     }
   }
 
+  // From here on outlines are as noisy as they prove to be, seen from these poses.
+  void estimate_noise(const std::vector<VectorXd>& poses) {
+    std::vector<std::vector<double>> found(poses.size());
+    parallel_for(poses.size(), 4, [&](size_t begin, size_t end) {
+      CoverageLikelihood::Scratch scratch(likelihood_);
+      for (size_t t = begin; t < end; ++t) {
+        if (!seen_[t]) continue;
+        const CoverageEvidence evidence = likelihood_.prepare(clip_[t].observations, Blur::k8, Blur::k8);
+        found[t] = likelihood_.estimate_noise(evidence, view(poses[t]), scratch);
+      }
+    });
+    noise_.assign(likelihood_.cameras().size(), 0);
+    for (size_t c = 0; c < noise_.size(); ++c) {
+      double sum = 0, count = 0;
+      for (const auto& noise : found) {
+        if (!noise.empty() && noise[c] > 0) sum += noise[c], ++count;
+      }
+      if (count > 0) noise_[c] = sum / count;
+    }
+  }
+  [[nodiscard]] const std::vector<double>& noise() const { return noise_; }
+
   [[nodiscard]] Linearised linearise(const std::vector<VectorXd>& poses, Blur blur) const {
     const size_t T = poses.size();
     const Eigen::Index D = poses.front().size();
@@ -145,7 +168,7 @@ class Problem {
         at.hessian[t] = MatrixXd::Zero(D, D);
         if (seen_[t]) {
           CoverageEvidence evidence = likelihood_.prepare(clip_[t].observations, blur, blur);
-          evidence.set_noise(options_.noise);
+          evidence.set_noise(noise_);
           NormalEquations equations = likelihood_.linearise(evidence, blur, view(poses[t]), scratch);
           costs[t] = equations.energy;
           at.gradient[t] = std::move(equations.gradient);
@@ -224,6 +247,7 @@ class Problem {
   std::span<const ClipInstant> clip_;
   const std::vector<bool>& seen_;
   const SmootherOptions& options_;
+  std::vector<double> noise_;  // [C]
   std::vector<double> acceleration_;
   std::vector<std::vector<Foothold>> footholds_;  // [T] from the frame before
 };
@@ -249,6 +273,7 @@ SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibil
   Problem problem(likelihood, plausibility, clip, seen, options);
   Point at{std::move(poses), {}};
   for (const FitStage& stage : options.stages) {
+    if (&stage != &options.stages.front() && &stage == &options.stages.back()) problem.estimate_noise(at.poses);
     problem.find_footholds(at.poses);
     at.equations = problem.linearise(at.poses, stage.blur);
     descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) -> std::optional<Point> {
@@ -270,7 +295,7 @@ SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibil
   }
   BlockTridiagonal matrix = problem.normal_matrix(at.equations);
   matrix.factorise();
-  SmoothedPoses result{.poses = std::move(at.poses), .covariances = {}, .cost = at.cost()};
+  SmoothedPoses result{.poses = std::move(at.poses), .covariances = {}, .noise = problem.noise(), .cost = at.cost()};
   result.covariances = matrix.marginals(result.poses.size());
   for (VectorXd& pose : result.poses) clamp_to_limits(skeleton, pose);
   return result;

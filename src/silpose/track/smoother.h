@@ -19,12 +19,14 @@ struct SmootherOptions {
   std::vector<FitStage> stages = {{Blur::k8, 4}, {Blur::k4, 4}, {Blur::k2, 4}};
   double acceleration = 1.25;  // times motion/noise.h's acceleration_deviation
   double rest_weight = 0.2;    // plausibility.h
-  std::vector<double> noise;   // [C] of the outlines, in units of pixel_unit^3; empty: that of exact masks
+  std::vector<double> noise;   // [C] of the outlines, in units of pixel_unit^3; empty: that of exact masks. The last of
+                               // several stages finds its own, from what the others left
 };
 
 struct SmoothedPoses {
   std::vector<Eigen::VectorXd> poses;        // [T] of [D], within the limits
   std::vector<Eigen::MatrixXd> covariances;  // [T] of [D, D]
+  std::vector<double> noise;                 // [C] as taken at the last stage
   double cost = 0;                           // at the last stage
 };
 

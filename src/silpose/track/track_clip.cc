@@ -75,6 +75,7 @@ class ClipTracker {
         {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
         best_path(), {.noise = noise_}, [&] { return proceed(); });
     if (stopped_) return {};
+    noise_ = smoothed.noise;
     return reports(smoothed);
   }
 
