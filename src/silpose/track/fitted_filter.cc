@@ -12,9 +12,14 @@ namespace {
 
 // How many frames the estimate of the noise looks back.
 constexpr double kNoiseMemory = 10;
+constexpr double kFarBetter = 0.5;  // of the noise until now
 
 MixtureOptions mixture_options(const TrackerOptions& options) {
   return {.num_hypotheses = *options.num_hypotheses, .seed = options.seed};
+}
+
+std::vector<double> pose_of(const GaussianComponent& hypothesis) {
+  return {hypothesis.pose().begin(), hypothesis.pose().end()};
 }
 
 std::vector<Eigen::VectorXd> poses_of(std::span<const StartingPose> starts) {
@@ -37,19 +42,18 @@ FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const 
 void FittedFilter::start(std::span<const StartingPose> starts) {
   mixture_.start(poses_of(starts));
   noise_.clear();
-  found_anew_ = true;
   report();
 }
 
 void FittedFilter::add(std::span<const StartingPose> starts) {
   mixture_.add(poses_of(starts));
-  found_anew_ = true;
+  sought_ = true;
 }
 
 FilterReport FittedFilter::step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) {
   const Stopwatch stopwatch;
   CoverageEvidence evidence = fine_->prepare(observations, Blur::k8);
-  if (noise_.empty()) update_noise(evidence);
+  if (noise_.empty() || sought_) begin_noise(evidence);
   evidence.set_noise(noise_);
   mixture_.step(evidence, dt_s);
   update_noise(evidence);
@@ -65,24 +69,30 @@ FilterReport FittedFilter::coast(double dt_s) {
   return report();
 }
 
+// The best of what there is says how good a fit can be. Later on only one that is far better has a say: what was lost
+// until now told nothing of the outlines.
+void FittedFilter::begin_noise(const CoverageEvidence& evidence) {
+  CoverageLikelihood::Scratch scratch(*fine_);
+  std::vector<double> least;
+  for (const GaussianComponent& hypothesis : mixture_.hypotheses()) {
+    const std::vector<double> found = fine_->estimate_noise(evidence, pose_of(hypothesis), scratch);
+    if (least.empty()) least = found;
+    for (size_t c = 0; c < found.size(); ++c) least[c] = std::min(least[c], found[c]);
+  }
+  if (noise_.empty()) noise_.assign(least.size(), 0);
+  for (size_t c = 0; c < least.size(); ++c) {
+    if (noise_[c] == 0) noise_[c] = least[c] > 0 ? least[c] : CoverageLikelihood::kExactNoise;
+    if (least[c] > 0 && least[c] < kFarBetter * noise_[c]) noise_[c] = least[c];
+  }
+  sought_ = false;
+}
+
 void FittedFilter::update_noise(const CoverageEvidence& evidence) {
   CoverageLikelihood::Scratch scratch(*fine_);
-  const auto noise_at = [&](const GaussianComponent& hypothesis) {
-    const Eigen::VectorXd pose = hypothesis.pose();
-    return fine_->estimate_noise(evidence, view(pose), scratch);
-  };
-  std::vector<double> found = noise_at(mixture_.hypotheses().front());
-  if (found_anew_) {  // the best of what there is says how good a fit can be
-    for (const GaussianComponent& hypothesis : mixture_.hypotheses().subspan(1)) {
-      const std::vector<double> other = noise_at(hypothesis);
-      for (size_t c = 0; c < found.size(); ++c) found[c] = std::min(found[c], other[c]);
-    }
+  const std::vector<double> found = fine_->estimate_noise(evidence, pose_of(mixture_.hypotheses().front()), scratch);
+  for (size_t c = 0; c < noise_.size(); ++c) {
+    if (found[c] > 0) noise_[c] *= std::pow(found[c] / noise_[c], 1 / kNoiseMemory);
   }
-  noise_.resize(found.size(), CoverageLikelihood::kExactNoise);
-  for (size_t c = 0; c < found.size(); ++c) {
-    if (found[c] > 0) noise_[c] *= std::pow(found[c] / noise_[c], found_anew_ ? 1 : 1 / kNoiseMemory);
-  }
-  found_anew_ = false;
 }
 
 FilterReport FittedFilter::report() {

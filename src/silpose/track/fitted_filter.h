@@ -30,6 +30,7 @@ class FittedFilter final : public PoseFilter {
   [[nodiscard]] std::vector<double> noise() const override { return noise_; }
 
  private:
+  void begin_noise(const CoverageEvidence& evidence);
   void update_noise(const CoverageEvidence& evidence);
   FilterReport report();
 
@@ -38,7 +39,7 @@ class FittedFilter final : public PoseFilter {
   ParticleSet particles_;
   BodyError body_error_;
   BodyError::Variance from_body_;  // of the last estimate
-  bool found_anew_ = false;        // hypotheses from scratch: what the noise was taken to be before no longer counts
+  bool sought_ = false;            // hypotheses were added since the last step
   std::vector<double> noise_;      // [C]; empty until the first step
 };
 

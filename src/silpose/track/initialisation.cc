@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -11,49 +10,27 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
-#include "silpose/render/silhouette.h"
-#include "silpose/shape/normalised_silhouette.h"
 #include "silpose/track/limb_search.h"
+#include "silpose/track/picture_moves.h"
+#include "silpose/track/place_on_mask.h"
 
 namespace silpose {
 namespace {
 
-constexpr double kPlacingResolution = 96;  // raster pixels along the longer side of the silhouette
 // All candidates are fitted at these; the best of each heading at the finer ones.
 constexpr FitStage kCoarseStages[] = {{Blur::k32, 3}, {Blur::k16, 4}};
 constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}};
 constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};
+constexpr FitStage kDistantStages[] = {{Blur::k8, 6}, {Blur::k4, 8}};
+constexpr uint64_t kDistantStream = std::numeric_limits<uint64_t>::max();  // of random numbers, and those below
+constexpr int kDistantRounds = 3;                                          // at most: no progress ends them
 // E of a start that leaves nothing to explain; and how far a variant must be from its origin to be worth a fit, metres.
 constexpr double kExplained = 3, kNovelty = 0.15;
 constexpr double kTwoAtOnce = 0.3;  // share of the random limbs that come in pairs
 // A round of other limbs that leaves more than this of the cost is stale; as many of them in a row end a search. So
 // does an E, after as many rounds, that is far more than is left elsewhere.
 constexpr double kStaleCost = 0.97, kHopelessRatio = 5, kHopeless = 100;
-constexpr int kStaleRounds = 2;
-
-struct Blob {
-  double area = 0;
-  Eigen::Vector2d centroid = Eigen::Vector2d::Zero();  // raster pixels
-};
-
-Blob measure(const Mask& mask) {
-  Blob blob;
-  for (int y = 0; y < mask.height(); ++y) {
-    const auto row = mask.row(y);
-    for (size_t w = 0; w < row.size(); ++w) {
-      for (uint64_t bits = row[w]; bits != 0; bits &= bits - 1) {
-        blob.area += 1;
-        blob.centroid += Eigen::Vector2d(static_cast<double>(w) * 64 + std::countr_zero(bits) + 0.5, y + 0.5);
-      }
-    }
-  }
-  if (blob.area > 0) blob.centroid /= blob.area;
-  return blob;
-}
-
-Eigen::Vector2d image_from_raster(const Window& window, const Eigen::Vector2d& x) {
-  return {window.x0 + x.x() / window.scale_x, window.y0 + x.y() / window.scale_y};
-}
+constexpr int kStaleRounds = 2, kPatience = 3;
 
 // Loosely about a candidate: joints by half their range, the trunk's tilt by 20 degrees; where the body is, and which
 // way it faces, is free.
@@ -153,6 +130,21 @@ std::vector<Candidate> promising_variants(const Sight& sight, std::span<const Ca
   return chosen;
 }
 
+// What looks like the best starts and is far from them: two limbs that play each other's part cannot be mended one by
+// one.
+std::vector<Candidate> distant_variants(const Sight& sight, std::span<const Candidate> starts,
+                                        const InitialisationOptions& options, uint64_t index) {
+  std::vector<Candidate> chosen;
+  for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
+    Rng rng(options.seed, kDistantStream - index, i);
+    for (const auto& pose : picture_moves(sight.body(), view(starts[i].fit.pose), sight.eye, rng)) {
+      chosen.push_back(candidate_at(sight.body().skeleton, pose));
+    }
+  }
+  fit_all(sight, kDistantStages, chosen);
+  return chosen;
+}
+
 // Starts by the direction they face, the one with the best start first. REQUIRES: sorted, best first.
 std::vector<std::vector<Candidate>> by_heading(const Skeleton& skeleton, std::vector<Candidate> starts) {
   std::vector<std::vector<Candidate>> groups;
@@ -212,44 +204,6 @@ void search_limbs(const Sight& sight, const InitialisationOptions& options, cons
 
 }  // namespace
 
-StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
-                         const StateBatch& candidates) {
-  check(!observation.box.empty(), "place_on_mask: nothing was found");
-  const double longer_side = std::max(observation.box.width, observation.box.height);
-  const Window window = window_of_image(camera.width, camera.height, std::min(1.0, kPlacingResolution / longer_side));
-  const Blob observed = measure(resample_mask(observation.mask, window));
-  if (observed.area < 1) return candidates;
-  const Eigen::Vector2d target = image_from_raster(window, observed.centroid);
-  const EdgeTopology topology(body.rest.faces);
-
-  StateBatch placed = candidates;
-  parallel_for(static_cast<size_t>(placed.rows()), 1, [&](size_t begin, size_t end) {
-    OutlineRenderer outline(topology);
-    Mask mask(window.width, window.height);
-    std::vector<Eigen::Vector2f> pixels(body.rest.vertices.size());
-    for (size_t k = begin; k < end; ++k) {
-      auto row = placed.row(static_cast<Eigen::Index>(k));
-      const std::span<double> pose(row.data(), static_cast<size_t>(body.skeleton.num_dofs()));
-      // Depth first from a body of average proportions: an upright body covers about a tenth of its height squared.
-      double depth =
-          0.32 * body.height_m * std::sqrt(camera.fx * camera.fy) * window.scale_x / std::sqrt(observed.area);
-      Eigen::Vector2d aim = target;
-      for (int iteration = 0; iteration < 5; ++iteration) {
-        const Eigen::Vector3d root =
-            camera.cam_from_world.inverse() * Eigen::Vector3d(camera.ray_from_pixel(aim) * depth);
-        std::copy_n(root.data(), 3, pose.begin());
-        project_vertices(camera, skin_vertices(body, pose), pixels);
-        outline.draw(pixels, window, mask);
-        const Blob drawn = measure(mask);
-        if (drawn.area < 1) break;
-        depth *= std::clamp(std::sqrt(drawn.area / observed.area), 0.5, 2.0);
-        aim += target - image_from_raster(window, drawn.centroid);
-      }
-    }
-  });
-  return placed;
-}
-
 std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
                                      std::span<const Observation> observations, const StateBatch& candidates,
                                      const InitialisationOptions& options) {
@@ -300,8 +254,18 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
     least = std::min(least, headings[h].front().fit.energy);
     std::ranges::move(headings[h], std::back_inserter(starts));
   }
-  // The best of all once more, against each other, and with more patience.
-  search_limbs(sight, options, {headings.size(), least, options.num_rounds}, starts);
+  // The best of all once more, against each other; then from what looks like them and is far away, while it helps.
+  uint64_t index = headings.size();
+  search_limbs(sight, options, {index++, least, kPatience}, starts);
+  for (int round = 0; round < kDistantRounds && starts.front().fit.energy > kExplained; ++round) {
+    const double before = starts.front().fit.cost();
+    std::vector<Candidate> distant = distant_variants(sight, starts, options, index);
+    if (distant.empty()) break;
+    search_limbs(sight, options, {index++, starts.front().fit.energy, kStaleRounds}, distant);
+    std::ranges::move(distant, std::back_inserter(starts));
+    search_limbs(sight, options, {index++, starts.front().fit.energy, kPatience}, starts);
+    if (starts.front().fit.cost() > kStaleCost * before) break;
+  }
 
   // How good a fit can be tells how much the differences between fits mean.
   CoverageLikelihood::Scratch scratch(likelihood);

@@ -1,6 +1,7 @@
 // Initialisation: from one instant's masks and a set of common poses to ranked starting poses. Each candidate is placed
 // on the mask and fitted from wide blur to narrow. From the best of each heading a search of its own tries other limbs,
-// until one of them explains the silhouette: the best of all at first often cannot be mended limb by limb.
+// until one of them explains the silhouette: the best of all at first often cannot be mended limb by limb. Where none
+// does, so does one from what looks like the best and is far from it: alike limbs exchanged, the body turned.
 // Source: cormier2019 sect. 2.4.1 (gradient descent from known common poses).
 // Threads: functions without state; all cores are used, and the result is the same on any number.
 #pragma once
@@ -38,10 +39,5 @@ struct StartingPose {
 std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
                                      std::span<const Observation> observations, const StateBatch& candidates,
                                      const InitialisationOptions& options = {});
-
-// Moves each candidate's root so that its silhouette has the area and the centroid of the observed one.
-// Shapes: [K, D] -> [K, D]. REQUIRES: something was found.
-StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
-                         const StateBatch& candidates);
 
 }  // namespace silpose

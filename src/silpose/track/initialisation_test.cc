@@ -5,6 +5,7 @@
 #include "silpose/body/test_body.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/track/limbs.h"
+#include "silpose/track/place_on_mask.h"
 
 namespace silpose {
 namespace {

@@ -1,12 +1,11 @@
 #include "silpose/track/limbs.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "silpose/body/point_motion.h"
+#include "silpose/track/limb_reach.h"
 
 namespace silpose {
 namespace {
@@ -41,60 +40,6 @@ std::vector<int> limb_of_joint(const Skeleton& skeleton, std::vector<Limb>& limb
     if (limb >= 0) limbs[limb].dofs.push_back(d);
   }
   return limb_of;
-}
-
-// Ends of the limb's segments, from its first joint that turns: joint centres, then the end point of the last joint.
-struct LimbPoint {
-  int joint_idx;
-  Eigen::Vector3d offset;  // in the joint
-};
-
-std::vector<LimbPoint> limb_points(const BodyModel& body, const Limb& limb) {
-  std::vector<LimbPoint> points;
-  for (const int j : limb.joints) {
-    const Joint& joint = body.skeleton.joints()[static_cast<size_t>(j)];
-    if (points.empty() && joint.dof_indices.empty()) continue;
-    points.push_back({j, Eigen::Vector3d::Zero()});
-  }
-  if (points.empty()) return points;
-  const int last_joint = limb.joints.back();
-  for (const BodyModel::EndPoint& end_point : body.end_points) {
-    if (end_point.joint_idx != last_joint) continue;
-    points.push_back({end_point.joint_idx, end_point.offset_in_joint});
-    break;
-  }
-  return points;
-}
-
-// The limb's DOF that bring its points nearest to `targets`, starting from `pose`; the largest distance left.
-double reach_for(const Skeleton& skeleton, const Limb& limb, std::span<const LimbPoint> points,
-                 std::span<const Eigen::Vector3d> targets, std::vector<double>& pose) {
-  constexpr int kIterations = 15;
-  constexpr double kHold = 1e-4;  // m^2 / rad^2: keeps twists that no point shows where they are
-  const auto num_dofs = static_cast<Eigen::Index>(limb.dofs.size());
-  double largest = 0;
-  for (int iteration = 0; iteration <= kIterations; ++iteration) {
-    const PointMotion motion(skeleton, pose);
-    Eigen::MatrixXd normal = kHold * Eigen::MatrixXd::Identity(num_dofs, num_dofs);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(num_dofs);
-    largest = 0;
-    for (size_t i = 1; i < points.size(); ++i) {
-      const Eigen::Vector3d x = motion.position(points[i].joint_idx, points[i].offset);
-      const Eigen::Vector3d off = targets[i] - x;
-      largest = std::max(largest, off.norm());
-      const Eigen::Matrix3Xd all = motion.jacobian(points[i].joint_idx, x);
-      const Eigen::Matrix3Xd jacobian = all(Eigen::all, limb.dofs);
-      normal += jacobian.transpose() * jacobian;
-      right += jacobian.transpose() * off;
-    }
-    if (iteration == kIterations || largest < 0.005) break;
-    Eigen::VectorXd step = normal.ldlt().solve(right);
-    const double longest = step.cwiseAbs().maxCoeff();
-    if (longest > 0.7) step *= 0.7 / longest;
-    for (Eigen::Index i = 0; i < num_dofs; ++i) pose[static_cast<size_t>(limb.dofs[static_cast<size_t>(i)])] += step[i];
-    skeleton.clamp(pose);
-  }
-  return largest;
 }
 
 }  // namespace
@@ -135,15 +80,11 @@ std::vector<std::pair<size_t, size_t>> alike_limbs(const Skeleton& skeleton, std
   return pairs;
 }
 
-namespace {
-
 void exchange(std::span<double> pose, const Limb& a, const Limb& b) {
   for (size_t k = 0; k < a.dofs.size(); ++k) {
     std::swap(pose[static_cast<size_t>(a.dofs[k])], pose[static_cast<size_t>(b.dofs[k])]);
   }
 }
-
-}  // namespace
 
 std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose) {
   const std::vector<Limb> limbs = limbs_of(skeleton);
@@ -165,12 +106,7 @@ std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Lim
   std::vector<std::vector<double>> variants;
   const std::vector<LimbPoint> points = limb_points(body, limb);
   if (points.size() < 2) return variants;
-  const auto world_from_joint = body.skeleton.forward_kinematics(pose);
-  std::vector<Eigen::Vector3d> x;
-  x.reserve(points.size());
-  for (const LimbPoint& point : points) {
-    x.push_back(world_from_joint[static_cast<size_t>(point.joint_idx)] * point.offset);
-  }
+  const std::vector<Eigen::Vector3d> x = positions(body.skeleton, points, pose);
   const Eigen::Vector3d ray = (x.front() - eye).normalized();
   const size_t num_segments = points.size() - 1;
   const auto add_reflection = [&](size_t first, size_t last) {
@@ -184,7 +120,8 @@ std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Lim
     }
     if (moved < kReached) return;
     std::vector<double> variant(pose.begin(), pose.end());
-    if (reach_for(body.skeleton, limb, points, targets, variant) < kReached) variants.push_back(std::move(variant));
+    if (reach_for(body.skeleton, limb, points, targets, Eigen::Matrix3d::Identity(), variant) < kReached)
+      variants.push_back(std::move(variant));
   };
   add_reflection(0, 1);
   if (num_segments > 1) {
@@ -236,21 +173,23 @@ double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen:
   return furthest;
 }
 
-std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,
-                                      const Eigen::Vector3d& eye) {
-  int turn = -1;
-  Eigen::Vector3d root = Eigen::Vector3d::Zero();
-  bool outermost = true;
+std::optional<int> turning_dof(const Skeleton& skeleton) {
   for (const int d : skeleton.joints().front().dof_indices) {
     const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-    if (dof.is_translation) {
-      root += pose[static_cast<size_t>(d)] * dof.axis;
-    } else {
-      if (outermost && dof.axis.y() == 1) turn = d;
-      outermost = false;
-    }
+    if (!dof.is_translation) return dof.axis.y() == 1 ? std::optional(d) : std::nullopt;
   }
-  if (turn < 0) return {};
+  return std::nullopt;
+}
+
+std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,
+                                      const Eigen::Vector3d& eye) {
+  const std::optional<int> turn = turning_dof(skeleton);
+  if (!turn) return {};
+  Eigen::Vector3d root = Eigen::Vector3d::Zero();
+  for (const int d : skeleton.joints().front().dof_indices) {
+    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+    if (dof.is_translation) root += pose[static_cast<size_t>(d)] * dof.axis;
+  }
   // The body's own mirror image, x to -x with right and left exchanged: a turn about (x, y, z) becomes one about
   // (x, -y, -z). Limbs that are alike have axes that are mirrored already.
   std::vector<double> mirrored(pose.begin(), pose.end());
@@ -268,8 +207,8 @@ std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const 
   }
   // From the plane x = 0 to the one through the root that faces the eye.
   const Eigen::Vector3d towards = eye - root;
-  mirrored[static_cast<size_t>(turn)] =
-      wrap_angle(mirrored[static_cast<size_t>(turn)] + kPi + 2 * std::atan2(towards.x(), towards.z()));
+  mirrored[static_cast<size_t>(*turn)] =
+      wrap_angle(mirrored[static_cast<size_t>(*turn)] + kPi + 2 * std::atan2(towards.x(), towards.z()));
   skeleton.clamp(mirrored);
   return mirrored;
 }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,6 +29,9 @@ std::vector<std::vector<int>> limb_blocks(const Skeleton& skeleton);
 
 // Limbs whose DOF have the same names but for a leading right_ or left_: pairs of indices into `limbs`.
 std::vector<std::pair<size_t, size_t>> alike_limbs(const Skeleton& skeleton, std::span<const Limb> limbs);
+
+// The angles of two alike limbs, exchanged in a pose [D].
+void exchange(std::span<double> pose, const Limb& a, const Limb& b);
 
 // The pose [D] with the angles of each pair of alike limbs exchanged, one pair at a time and then all at once. From the
 // side a silhouette hardly tells which leg is which.
@@ -55,6 +59,9 @@ std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Li
 
 // How far the joint or end point that is furthest off is off, metres. Shapes: landmarks [J + E] of two poses.
 double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b);
+
+// The DOF by which the body turns about the vertical: the outermost rotation of the root, if that is its axis.
+std::optional<int> turning_dof(const Skeleton& skeleton);
 
 // The pose as a mirror that faces `eye` shows it, right and left relabelled: from far away its silhouette is the same.
 // Nothing for a skeleton whose root cannot turn about the vertical.

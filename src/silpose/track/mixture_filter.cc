@@ -72,8 +72,14 @@ void MixtureFilter::start(const std::vector<Eigen::VectorXd>& poses) {
 
 void MixtureFilter::add(const std::vector<Eigen::VectorXd>& poses) {
   check(!hypotheses_.empty(), "MixtureFilter: add before start");
-  const double log_weight = hypotheses_.front().log_weight + options_.jump_log_prior;
-  for (const Eigen::VectorXd& pose : poses) hypotheses_.push_back(component_of(pose, log_weight));
+  const GaussianComponent best = hypotheses_.front();
+  const double known = log_determinant(best.pose_covariance()), log_weight = best.log_weight + options_.jump_log_prior;
+  for (const Eigen::VectorXd& pose : poses) {
+    GaussianComponent component = component_of(pose, log_weight);
+    // To learn a pose costs evidence, which those that were there before paid when they did.
+    component.log_weight += std::max(0.0, 0.5 * (log_determinant(component.pose_covariance()) - known));
+    hypotheses_.push_back(std::move(component));
+  }
   normalise_weights(hypotheses_);
 }
 

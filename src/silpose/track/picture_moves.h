@@ -1,0 +1,31 @@
+// Poses that are far from one another and yet end where a picture shows limbs: two alike limbs that took each other's
+// part, and a body that is turned. From aslant neither is found limb by limb, as everything in between fits worse.
+// Based on: kinematic jump processes (references.bib: sminchisescu2003).
+// Threads: functions without state.
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "silpose/base/rng.h"
+#include "silpose/track/limbs.h"
+
+namespace silpose {
+
+// The pose [D] with each of two alike limbs as near as it gets to where `eye` sees the other; only their DOF change.
+// The depth is free. Nothing where the limbs have no length, or not as many joints.
+std::vector<double> exchanged_in_picture(const BodyModel& body, const Limb& a, const Limb& b,
+                                         std::span<const double> pose, const Eigen::Vector3d& eye, Rng& rng);
+
+// The pose [D] turned about the vertical by `angle` (radians), with limbs that stay where `eye` sees them, as near as
+// they get. Nothing for a skeleton whose root cannot turn so.
+std::vector<double> turned_in_picture(const BodyModel& body, std::span<const double> pose, double angle,
+                                      const Eigen::Vector3d& eye);
+
+// All of the above for one pose: every pair of alike limbs exchanged, and all of them at once; turned either way;
+// mirrored in depth.
+std::vector<std::vector<double>> picture_moves(const BodyModel& body, std::span<const double> pose,
+                                               const Eigen::Vector3d& eye, Rng& rng);
+
+}  // namespace silpose
