@@ -48,7 +48,7 @@ int run_command(const Command& command, const CommonOptions& common) {
     } else if (!outcome->text.empty() && (!common.quiet || outcome->is_answer)) {
       fmt::print("{}\n", outcome->text);
     }
-    return outcome->interrupted ? kInterrupted : kSuccess;
+    return outcome->interrupted ? kInterrupted : outcome->failed ? kFailure : kSuccess;
   } catch (const UsageError& wrong) {
     return fail(console, common.json, wrong.what(), kWrongUsage);
   } catch (const CLI::ParseError& wrong) {  // from options that a --config file gave

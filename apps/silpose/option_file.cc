@@ -14,7 +14,8 @@ namespace silpose::app {
 namespace {
 
 // Of the run rather than of the method: not for a file that others start from.
-constexpr std::array<std::string_view, 6> kNotKept = {"help", "config", "json", "quiet", "out", "threads"};
+constexpr std::array<std::string_view, 8> kNotKept = {"help", "config",  "json", "quiet",
+                                                      "out",  "threads", "each", "resume"};
 
 std::string key_of(const CLI::Option& option) {
   if (!option.get_lnames().empty()) return option.get_lnames().front();

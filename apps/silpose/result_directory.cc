@@ -39,14 +39,14 @@ bool is_own(const fs::directory_entry& entry) {
   return std::find(kFiles.begin(), kFiles.end(), name) != kFiles.end();
 }
 
-bool has_run_json(const fs::path& directory) {
+}  // namespace
+
+bool is_whole_result(const fs::path& directory) {
   std::ifstream file(directory / "run.json");
   const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
   return run.is_object() && run.contains("command") && run["command"].is_string() &&
          run["command"].get<std::string>().starts_with("silpose ");
 }
-
-}  // namespace
 
 std::optional<std::string> foreign_content(const fs::path& directory, bool must_be_whole) {
   std::error_code failed;
@@ -56,7 +56,7 @@ std::optional<std::string> foreign_content(const fs::path& directory, bool must_
     if (!is_own(entry)) return entry.path().filename().string();
   }
   if (failed && failed != std::errc::no_such_file_or_directory) return failed.message();
-  if (!empty && must_be_whole && !has_run_json(directory)) return "files, but no run.json of silpose";
+  if (!empty && must_be_whole && !is_whole_result(directory)) return "files, but no run.json of silpose";
   return std::nullopt;
 }
 

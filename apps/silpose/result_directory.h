@@ -41,6 +41,9 @@ class ResultDirectory {
   std::filesystem::path final_, partial_;  // partial_ is empty once it is renamed or kept
 };
 
+// Whether a finished result of silpose lies there.
+bool is_whole_result(const std::filesystem::path& directory);
+
 // What directory holds that silpose does not write; nothing when it could be replaced. An absent or empty directory
 // can.
 std::optional<std::string> foreign_content(const std::filesystem::path& directory, bool must_be_whole);

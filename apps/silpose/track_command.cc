@@ -5,6 +5,7 @@
 #include "apps/silpose/command.h"
 #include "apps/silpose/result_directory.h"
 #include "apps/silpose/run_facts.h"
+#include "apps/silpose/track_each.h"
 #include "apps/silpose/track_options.h"
 #include "apps/silpose/track_result.h"
 #include "apps/silpose/track_run.h"
@@ -23,11 +24,8 @@ Result<CameraChoice> choose_cameras_of(const TrackOptions& options) {
   return choose_cameras(options.camera, sizes);
 }
 
-Result<Outcome> run_track(const CLI::App& app, const TrackOptions& options, const CommonOptions& common,
-                          Console& console) {
-  if (options.out.empty()) throw UsageError("--out is missing");
-  if (options.input.videos.empty()) throw UsageError("VIDEO is missing");
-  check_together(options);
+Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, const CommonOptions& common,
+                              Console& console) {
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
   if (!directory) return directory.failure();
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
@@ -61,6 +59,16 @@ Result<Outcome> run_track(const CLI::App& app, const TrackOptions& options, cons
   }
   Outcome outcome = track_outcome(told, tracked->interrupted ? directory->path() : directory->final_path());
   return deliver(*directory, app, chosen_options(options, tracked->used), std::move(outcome), console);
+}
+
+Result<Outcome> run_track(const CLI::App& app, const TrackOptions& options, const CommonOptions& common,
+                          Console& console) {
+  if (options.out.empty()) throw UsageError("--out is missing");
+  if (options.input.videos.empty()) throw UsageError("VIDEO is missing");
+  check_together(options);
+  if (!options.each) return track_clip_of(app, options, common, console);
+  return track_each(options, console,
+                    [&](const TrackOptions& of_clip) { return track_clip_of(app, of_clip, common, console); });
 }
 
 }  // namespace

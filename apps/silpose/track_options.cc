@@ -77,6 +77,8 @@ std::optional<std::string> sampling_option(const TrackOptions& options) {
 void add_track_options(CLI::App& app, TrackOptions& options) {
   add_input_options(app, options.input);
   app.add_option("--out", options.out, "Directory for the result");
+  app.add_flag("--each", options.each, "Every VIDEO is a clip of its own, its result in DIR/NAME");
+  app.add_flag("--resume", options.resume, "With --each: leave out clips that have a result already");
   add_model_option(app, options.model);
   add_camera_options(app, options.camera);
   app.add_option(
@@ -98,6 +100,7 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
 }
 
 void check_together(const TrackOptions& options) {
+  if (options.resume && !options.each) throw UsageError("--resume: needs --each");
   const TrackerOptions& tracker = options.tracker;
   const char* const sampler = tracker.num_particles ? "--particles"
                               : tracker.num_layers  ? "--layers"
@@ -113,6 +116,7 @@ void check_together(const TrackOptions& options) {
     throw UsageError(fmt::format("{}: needs --particles, --layers or --preset thesis", *name));
   }
   if (options.fit_body.value_or(false)) {
+    if (options.each) throw UsageError("--fit-body: needs several cameras; with --each every clip has one");
     if (!*tracker.resolved().smooth) throw UsageError("--fit-body: needs --smooth");
     if (options.input.videos.size() < 2) {
       throw UsageError("--fit-body: one camera cannot tell the length of a bone from its depth; needs several");
@@ -129,7 +133,7 @@ void check_together(const TrackOptions& options) {
 bool fits_body(const TrackOptions& options) {
   const TrackerOptions resolved = options.tracker.resolved();
   return options.fit_body.value_or(options.tracker.preset == "accurate" && resolved.num_hypotheses &&
-                                   *resolved.smooth && options.input.videos.size() > 1);
+                                   *resolved.smooth && !options.each && options.input.videos.size() > 1);
 }
 
 TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
@@ -167,6 +171,7 @@ Result<std::optional<std::vector<double>>> read_initial_pose(const TrackOptions&
 
 std::map<std::string, std::string> chosen_options(const TrackOptions& options, const TrackerOptions& used) {
   std::map<std::string, std::string> chosen;
+  if (options.each) chosen["video"] = options.input.videos.front();
   const auto keep = [&](const char* name, const auto& value) {
     if (value) chosen[name] = fmt::format("{}", *value);
   };

@@ -24,6 +24,7 @@ struct TrackOptions {
   std::optional<std::string> metric, estimate;
   std::optional<double> resample_below;
   std::optional<bool> fit_body;
+  bool each = false, resume = false;
   TrackerOptions tracker;
 };
 
