@@ -26,4 +26,5 @@ if(NOT OpenCV_FOUND)
 endif()
 
 find_package(GTest REQUIRED)
+find_package(assimp REQUIRED)  # for tests: a reader of the glTF that is written
 find_package(benchmark REQUIRED)

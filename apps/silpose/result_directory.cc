@@ -17,9 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // Everything that track, synth and segment put into a directory.
-constexpr std::array<std::string_view, 12> kFiles = {
-    "poses.csv",   "poses_normalised.csv", "spread.csv", "joints.csv", "camera.toml", "overlay.mp4",
-    "report.html", "config.toml",          "motion.bvh", "run.json",   "video.mp4",   kFittedBodyFile};
+constexpr std::array<std::string_view, 15> kFiles = {
+    "poses.csv",   "poses_normalised.csv", "spread.csv", "joints.csv",  "camera.toml", "overlay.mp4",
+    "report.html", "config.toml",          "motion.bvh", "markers.trc", "motion.mot",  "motion.glb",
+    "run.json",    "video.mp4",            kFittedBodyFile};
 
 bool is_mask_folder(const fs::path& folder) {
   std::error_code failed;

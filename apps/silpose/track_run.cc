@@ -6,6 +6,7 @@
 
 #include "sadb/store/memory_store.h"
 #include "silpose/base/clock.h"
+#include "silpose/exchange/mot.h"
 #include "silpose/recording/track_recorder.h"
 #include "silpose/track/track_clip.h"
 #include "silpose/track/tracker.h"
@@ -45,6 +46,9 @@ class TrackRun {
     const Stopwatch writing;
     const Result<void> written = writer_.finish(tracked_.recording);
     if (!written) return written.failure();
+    if (!has_opensim_coordinates(writer_.body().skeleton)) {
+      tracked_.warnings.emplace_back("no motion.mot: the model's skeleton is not the human one");
+    }
     tracked_.seconds.write += writing.seconds();
     tracked_.loop_s = wall.seconds();
     return std::move(tracked_);

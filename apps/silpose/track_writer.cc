@@ -5,6 +5,9 @@
 #include <utility>
 
 #include "silpose/exchange/bvh.h"
+#include "silpose/exchange/glb.h"
+#include "silpose/exchange/mot.h"
+#include "silpose/exchange/trc.h"
 #include "silpose/geometry/calibration_file.h"
 #include "silpose/image/image_file.h"
 #include "silpose/render/draw_overlay.h"
@@ -50,14 +53,17 @@ Result<void> TrackWriter::finish(const TrackRecording& recording) {
     if (!written) return written;
   }
   const Skeleton& skeleton = body_->skeleton;
-  const std::vector<std::vector<double>> poses = even_poses(recording);
+  const PoseTable poses = pose_table(recording);
   const Result<void> files[] = {
-      write_poses(directory_ / "poses.csv", skeleton, pose_table(recording)),
+      write_poses(directory_ / "poses.csv", skeleton, poses),
       write_poses(directory_ / "poses_normalised.csv", skeleton, normalised_pose_table(recording, skeleton),
                   PoseUnits::kNormalised),
       write_poses(directory_ / "spread.csv", skeleton, spread_table(recording)),
       write_joints(directory_ / "joints.csv", joint_table(recording, *body_, cameras_[0])),
-      write_bvh(directory_ / "motion.bvh", clip_from_poses(skeleton, poses, fps_, body_->end_points)),
+      write_bvh(directory_ / "motion.bvh", clip_from_poses(skeleton, even_poses(recording), fps_, body_->end_points)),
+      write_glb(directory_ / "motion.glb", *body_, poses),
+      write_trc(directory_ / "markers.trc", marker_table(recording, *body_), fps_),
+      has_opensim_coordinates(skeleton) ? write_mot(directory_ / "motion.mot", skeleton, poses) : Result<void>(),
   };
   for (const Result<void>& file : files) {
     if (!file) return file;

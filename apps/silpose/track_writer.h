@@ -36,7 +36,7 @@ class TrackWriter {
   void set_fitted_body(std::shared_ptr<const BodyModel> body);
 
   // Ends overlay.mp4; writes camera.toml and, where the recording holds anything, poses, poses_normalised, spread and
-  // joints as CSV and motion.bvh.
+  // joints as CSV, motion.bvh, motion.glb, markers.trc and, where the skeleton is the human's, motion.mot.
   Result<void> finish(const TrackRecording& recording);
 
   [[nodiscard]] const std::vector<PinholeCamera>& cameras() const { return cameras_; }

@@ -241,6 +241,20 @@ TEST_F(Bvh, WrittenAnglesDoNotJump) {
   EXPECT_THAT(last, HasSubstr(fmt::format(" {:.6f}", to_degrees(9.9))));
 }
 
+TEST_F(Bvh, WrittenAnglesGoOnPastARightAngleOfTheMiddleAxis) {
+  const Skeleton skeleton = small_skeleton();
+  std::vector<std::vector<double>> poses;
+  for (int frame = 0; frame < 30; ++frame) {
+    poses.emplace_back(13, 0.0);
+    poses.back()[11] = 0.1 * frame;  // arm_rx, up to 166 degrees
+  }
+  ASSERT_TRUE(write_bvh(path_, clip_from_poses(skeleton, poses, 30)).ok());
+  std::ifstream stream(path_);
+  std::string line, last;
+  while (std::getline(stream, line)) last = line;
+  EXPECT_THAT(last, HasSubstr(fmt::format(" 0.000000 {:.6f} 0.000000", to_degrees(2.9))));
+}
+
 TEST_F(Bvh, SaysWhereItCannotWriteAndRefusesWrongPoses) {
   const Skeleton skeleton = small_skeleton();
   const std::vector<std::vector<double>> poses = {std::vector<double>(13, 0.0)}, wrong = {{1, 2, 3}};

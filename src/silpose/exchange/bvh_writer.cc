@@ -8,17 +8,10 @@
 #include "silpose/base/check.h"
 #include "silpose/base/text_file.h"
 #include "silpose/exchange/bvh.h"
+#include "silpose/exchange/steady_angles.h"
 
 namespace silpose {
 namespace {
-
-// Angles (z, x, y) with R = Rz Rx Ry, radians.
-Eigen::Vector3d zxy_angles(const Eigen::Matrix3d& r) {
-  const double cosine = std::hypot(r(2, 0), r(2, 2));
-  const double x = std::atan2(r(2, 1), cosine);
-  if (cosine < 1e-9) return {std::atan2(r(1, 0), r(0, 0)), x, 0};  // z and y turn about one axis: all of it to z
-  return {std::atan2(-r(0, 1), r(1, 1)), x, std::atan2(-r(2, 0), r(2, 2))};
-}
 
 class Writer {
  public:
@@ -40,7 +33,7 @@ class Writer {
       if (clip_.joints[j].parent_idx < 0) put_joint(j, 0);
     }
     put("MOTION\nFrames: {}\nFrame Time: {:.9f}\n", clip_.num_frames(), 1 / clip_.fps);
-    previous_.assign(clip_.num_joints(), Eigen::Vector3d::Zero());
+    angles_.assign(clip_.num_joints(), {});
     for (size_t frame = 0; frame < clip_.num_frames(); ++frame) put_frame(frame);
     return std::move(text_);
   }
@@ -80,21 +73,17 @@ class Writer {
       if (moves_[j]) {
         for (const double value : clip_.translations[at]) put_value(value);
       }
-      Eigen::Vector3d angles = zxy_angles(clip_.rotations[at].normalized().toRotationMatrix());
-      for (int k = 0; k < 3; ++k) {  // whole turns are added so that curves do not jump
-        angles[k] = previous_[j][k] + wrap_angle(angles[k] - previous_[j][k]);
-        put_value(to_degrees(angles[k]));
-      }
-      previous_[j] = angles;
+      const Eigen::Vector3d angles = angles_[j].next(clip_.rotations[at].normalized().toRotationMatrix());
+      for (const double angle : angles) put_value(to_degrees(angle));
     }
     text_ += '\n';
   }
 
   const Clip& clip_;
   std::vector<std::vector<size_t>> children_;
-  std::vector<bool> moves_;                // has position channels
-  std::vector<size_t> order_;              // joints depth first, without end sites
-  std::vector<Eigen::Vector3d> previous_;  // angles of the frame before
+  std::vector<bool> moves_;            // has position channels
+  std::vector<size_t> order_;          // joints depth first, without end sites
+  std::vector<SteadyAngles> angles_;
   std::string text_;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "silpose/base/check.h"
 
@@ -10,6 +11,10 @@ namespace silpose {
 namespace {
 
 double seconds(const RecordedStep& step) { return static_cast<double>(step.time_ns) * 1e-9; }
+
+bool was_compared(const RecordedStep& step) {
+  return step.state == StepReport::State::kTracked || step.state == StepReport::State::kInitialised;
+}
 
 template <class Values>
 PoseTable table_of(const TrackRecording& recording, bool has_scores, const Values& values) {
@@ -78,6 +83,16 @@ JointTable joint_table(const TrackRecording& recording, const BodyModel& body, c
   return table;
 }
 
+MarkerTable marker_table(const TrackRecording& recording, const BodyModel& body) {
+  MarkerTable table{.names = landmark_names(body)};
+  for (const RecordedStep& step : recording.steps) {
+    MarkerTable::Row row{.frame = step.frame_idx, .time_s = seconds(step)};
+    if (was_compared(step)) row.x_in_world = landmark_positions(body, step.pose);
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 std::vector<std::vector<double>> even_poses(const TrackRecording& recording) {
   std::vector<std::vector<double>> poses;
   int64_t next_frame = 0;
@@ -96,7 +111,7 @@ RecordingSummary summarise(const TrackRecording& recording) {
   double sum = 0, sum_of_squares = 0;
   for (const RecordedStep& step : recording.steps) {
     if (step.state == StepReport::State::kCoasted) ++summary.frames_coasted;
-    if (step.state != StepReport::State::kTracked && step.state != StepReport::State::kInitialised) continue;
+    if (!was_compared(step)) continue;
     ++summary.frames_tracked;
     sum += step.visual_accuracy;
     sum_of_squares += step.visual_accuracy * step.visual_accuracy;

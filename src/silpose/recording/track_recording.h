@@ -11,6 +11,7 @@
 
 #include "silpose/body/body_model.h"
 #include "silpose/exchange/tables.h"
+#include "silpose/exchange/trc.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/track/step_report.h"
 
@@ -39,6 +40,10 @@ PoseTable normalised_pose_table(const TrackRecording& recording, const Skeleton&
 PoseTable spread_table(const TrackRecording& recording);
 // Every joint and head_top, with its pixel in `camera` and its spread.
 JointTable joint_table(const TrackRecording& recording, const BodyModel& body, const PinholeCamera& camera);
+
+// Every joint and end point as a marker, a row a frame; without positions where the body was not compared with a
+// silhouette: waiting, coasted.
+MarkerTable marker_table(const TrackRecording& recording, const BodyModel& body);
 
 // Poses [T][D] at an even rate, as motion files want them: one a frame from the first step that has a pose; a frame
 // without one repeats the pose before.

@@ -62,6 +62,22 @@ TEST(TrackRecording, AJointBehindTheCameraHasNoPixel) {
   EXPECT_TRUE(std::isnan(joints.rows[0].pixel.x()));
 }
 
+TEST(TrackRecording, MarkersAreBlankWhereNothingWasCompared) {
+  const TrackRecording recording{"stick",
+                                 {step(3, {}, State::kWaiting), step(4, {1, kPi / 2}, State::kInitialised),
+                                  step(5, {1, 0}, State::kCoasted), step(6, {1, 0}, State::kTracked)}};
+  const MarkerTable markers = marker_table(recording, stick());
+  EXPECT_EQ(markers.names, (std::vector<std::string>{"root", "head_top", "toe"}));
+  ASSERT_EQ(markers.rows.size(), 4u);
+  EXPECT_TRUE(markers.rows[0].x_in_world.empty());
+  ASSERT_EQ(markers.rows[1].x_in_world.size(), 3u);
+  EXPECT_TRUE(markers.rows[1].x_in_world[1].isApprox(Eigen::Vector3d(-1, 1, 0), 1e-12));
+  EXPECT_TRUE(markers.rows[2].x_in_world.empty());
+  EXPECT_EQ(markers.rows[2].frame, 5);
+  EXPECT_DOUBLE_EQ(markers.rows[2].time_s, 0.5);
+  EXPECT_TRUE(markers.rows[3].x_in_world[1].isApprox(Eigen::Vector3d(0, 2, 0), 1e-12));
+}
+
 TEST(TrackRecording, EvenPosesFillGaps) {
   const TrackRecording recording{
       "stick", {step(1, {}, State::kWaiting), step(2, {0.5, 0}, State::kTracked), step(4, {0.7, 0}, State::kTracked)}};
