@@ -51,15 +51,16 @@ with open(result / "joints.csv") as file:
 for name in ("markers.trc", "motion.mot", "motion.bvh"):
     expect("nan" not in (result / name).read_text().lower().replace("\t", " ").split(), f"{name} holds NaN")
 
-# markers.trc, as OpenSim reads it: five header lines and a blank one; tabs, no cell too many or too few.
+# markers.trc, as OpenSim reads it: five header lines and a blank one; a tab ends every cell, none too many or too few.
 lines = (result / "markers.trc").read_text().split("\n")
 expect(lines[0] == "PathFileType\t4\t(X/Y/Z)\tmarkers.trc", "first line of markers.trc")
 head = dict(zip(lines[1].split("\t"), lines[2].split("\t"), strict=True))
 names = [name for name in lines[3].split("\t")[2:] if name]
-rows = [line.split("\t") for line in lines[6:-1]]
+expect(all(line.endswith("\t") for line in lines[3:5] + lines[6:-1]), "a line of markers.trc without its last tab")
+rows = [line[:-1].split("\t") for line in lines[6:-1]]
 expect(head["Units"] == "m" and int(head["NumFrames"]) == len(rows) and int(head["NumMarkers"]) == len(names), "trc header")
 expect(lines[3].startswith("Frame#\tTime\t") and lines[5] == "" and lines[-1] == "", "trc lines")
-expect(lines[4].split("\t")[2:] == [f"{c}{i + 1}" for i in range(len(names)) for c in "XYZ"], "trc axis line")
+expect(lines[4].split("\t")[2:-1] == [f"{c}{i + 1}" for i in range(len(names)) for c in "XYZ"], "trc axis line")
 expect(float(head["DataRate"]) == float(head["CameraRate"]) > 0 and int(head["OrigDataStartFrame"]) == int(rows[0][0]), "trc rates")
 for row in rows:
     expect(len(row) == 2 + 3 * len(names), f"frame {row[0]} of markers.trc has {len(row)} cells")

@@ -25,11 +25,11 @@ TEST_F(Trc, HoldsHeaderPositionsAndBlanks) {
             "PathFileType\t4\t(X/Y/Z)\tmarkers.trc\n"
             "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\tOrigNumFrames\n"
             "25.000000\t25.000000\t2\t2\tm\t25.000000\t10\t2\n"
-            "Frame#\tTime\troot\t\t\thead_top\t\t\n"
-            "\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n"
+            "Frame#\tTime\troot\t\t\thead_top\t\t\t\n"
+            "\t\tX1\tY1\tZ1\tX2\tY2\tZ2\t\n"
             "\n"
-            "10\t0.400000\t0.100000\t1.000000\t-2.000000\t0.000000\t1.500000\t-2.250000\n"
-            "11\t0.440000\t\t\t\t\t\t\n");
+            "10\t0.400000\t0.100000\t1.000000\t-2.000000\t0.000000\t1.500000\t-2.250000\t\n"
+            "11\t0.440000\t\t\t\t\t\t\t\n");
 }
 
 TEST_F(Trc, RefusesWhatIsNoMarkerTable) {
