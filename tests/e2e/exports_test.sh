@@ -1,4 +1,5 @@
-# The files for other programs: markers.trc, motion.mot, motion.glb, motion.bvh, of a clip in which nobody is seen for a while.
+# The files for other programs: markers.trc, motion.mot, motion.glb, motion.bvh, of a clip in which nobody is seen for a
+# while.
 here=$(realpath "$(dirname "$0")")
 source "$here/checks.sh"
 read_glb=$3
@@ -16,7 +17,8 @@ picture += chunk(b"IDAT", zlib.compress(bytes(240 * 321))) + chunk(b"IEND", b"")
 for path in sys.argv[1:]:
     open(path, "wb").write(picture)
 PYTHON
-track=(track masks --segmenter masks --camera truth/camera.toml --init truth/poses.csv --particles 100 --layers 3 --quiet --json)
+track=(track masks --segmenter masks --camera truth/camera.toml --init truth/poses.csv --particles 100 --layers 3
+       --quiet --json)
 "$silpose" "${track[@]}" --threads 1 --out one >one.json
 [[ $(number one.json frames_coasted) == 2 ]] || fail "$(number one.json frames_coasted) frames coasted, not 2"
 for file in markers.trc motion.mot motion.glb motion.bvh; do
@@ -48,6 +50,6 @@ payload = data[24:].replace(b"\x06\0\0\0thorax", b"\x06\0\0\0midway")
 open(sys.argv[2], "wb").write(data[:12] + struct.pack("<I", zlib.crc32(payload)) + data[16:24] + payload)
 PYTHON
 "$silpose" "${track[@]}" --model other.body --end 0.2 --out other >other.json || fail "another skeleton: exit $?"
-[[ ! -e other/motion.mot && -s other/motion.glb && -s other/markers.trc ]] || fail "other files of another skeleton: $(ls other)"
+[[ ! -e other/motion.mot && -s other/motion.glb && -s other/markers.trc ]] || fail "another skeleton: $(ls other)"
 grep -q 'no motion.mot: ' other.json || fail "no warning that there is no motion.mot"
 finish

@@ -18,6 +18,9 @@ cmp -s truth/poses.csv earlier/poses.csv || fail "the earlier result was touched
 rows=$(($(wc -l <earlier.partial/poses.csv) - 1))
 [[ $rows -ge 4 && $rows -lt 60 ]] || fail "$rows rows in the partial poses.csv"
 "$silpose" evaluate --result earlier.partial --truth truth --json --quiet >errors.json || fail "the partial result is not valid"
+for file in markers.trc motion.mot motion.glb motion.bvh; do
+  [[ -s earlier.partial/$file ]] || fail "no $file in the partial result"
+done
 [[ $(number errors.json frames) -ge 4 ]] || fail "evaluate finds no frames in the partial result"
 
 # The same command again starts anew and replaces both.
