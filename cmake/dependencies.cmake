@@ -10,10 +10,12 @@ find_package(ZLIB REQUIRED)
 find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(meshoptimizer REQUIRED)
 find_package(CLI11 REQUIRED)
+# FlatBuffers for its headers alone, which need no target: its CMake package asks for the compiler's, too.
+find_path(FLATBUFFERS_INCLUDE_DIR flatbuffers/flatbuffers.h REQUIRED)
 
 # OpenCV's own CMake package comes with Debian's libopencv-dev, which drags in 40 more packages; the modules we use have
 # packages of their own, without it.
-set(SILPOSE_OPENCV_MODULES core imgproc imgcodecs videoio video)
+set(SILPOSE_OPENCV_MODULES core imgproc imgcodecs videoio video dnn)
 find_package(OpenCV 4.5 QUIET COMPONENTS ${SILPOSE_OPENCV_MODULES})
 if(NOT OpenCV_FOUND)
   find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)

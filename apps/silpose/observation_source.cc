@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
 #include "silpose/base/clock.h"
 #include "silpose/image/image_file.h"
@@ -59,9 +60,12 @@ Result<CleanUpOptions> clean_up_options(const InputOptions& options, const Video
 
 void add_input_options(CLI::App& command, InputOptions& options) {
   command.add_option("VIDEO", options.videos, "A file, a folder of pictures, a pattern (img-%06d.png) or camera:N");
-  command.add_option("--segmenter", options.segmenter, "How the person is cut out: auto, background or masks")
+  command
+      .add_option("--segmenter", options.segmenter,
+                  "How the person is cut out: masks (given), background, learned (by a network), or auto: the first of "
+                  "these that is asked for, otherwise learned if scripts/fetch-network-data has run")
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "background", "masks"}));
+      ->check(CLI::IsMember({"auto", "background", "learned", "masks"}));
   command
       .add_option("--background", options.backgrounds,
                   "auto (from the whole clip), online, lead-in:SECONDS, or a video or picture of the empty scene")
@@ -112,7 +116,8 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
   for (size_t camera = 0; camera < count; ++camera) {
     SegmenterOptions segmenter;
     segmenter.kind = options.segmenter;
-    segmenter.background = of_camera("--background", options.backgrounds, camera, count, "auto");
+    segmenter.background = of_camera("--background", options.backgrounds, camera, count, "");
+    segmenter.networks = (data_directory() / "networks").string();
     segmenter.masks = of_camera("--masks", options.masks, camera, count, "");
     segmenter.default_fps = options.video_options().default_fps;
     const Result<CleanUpOptions> clean_up = clean_up_options(options, opened, camera);

@@ -8,6 +8,7 @@
 #include "silpose/segment/background_model.h"
 #include "silpose/segment/background_segmenter.h"
 #include "silpose/segment/given_masks.h"
+#include "silpose/segment/learned_segmenter.h"
 
 namespace silpose {
 namespace {
@@ -106,7 +107,7 @@ Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, con
   if (!opened) return opened.failure();
   Video& video = *opened;
   if (const auto fits = check_sizes(input, video, options.clean_up); !fits) return fits.failure();
-  const std::string& background = options.background;
+  const std::string background = options.background.empty() ? "auto" : options.background;
   BackgroundSegmenterOptions made{
       .name = "background " + background, .first_index = 0, .warnings = {}, .clean_up = options.clean_up};
 
@@ -146,17 +147,33 @@ Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, con
   return make_background_segmenter(std::move(*model), std::move(made));
 }
 
+Result<std::unique_ptr<Segmenter>> make_learned(const std::string& input, const SegmenterOptions& options) {
+  const Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  if (!video) return video.failure();
+  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
+  Result<PersonNetwork> network = PersonNetwork::load(options.networks);
+  if (!network) return network.failure();
+  Result<PersonDetector> detector = PersonDetector::load(options.networks);
+  if (!detector) return detector.failure();
+  return make_learned_segmenter(std::move(*network), std::move(*detector), options.clean_up);
+}
+
+std::string chosen_kind(const SegmenterOptions& options) {
+  if (options.kind != "auto") return options.kind;
+  if (!options.masks.empty()) return "masks";
+  return options.background.empty() && has_person_networks(options.networks) ? "learned" : "background";
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, const SegmenterOptions& options,
                                                   ProgressSink* progress) {
   options.clean_up.check();
-  const bool masks = options.kind == "masks" || (options.kind == "auto" && !options.masks.empty());
-  if (masks) return make_masks(input, options);
-  if (options.kind != "auto" && options.kind != "background") {
-    return error("segmenter '{}': unknown; known are auto, background, masks", options.kind);
-  }
-  return make_background(input, options, progress);
+  const std::string kind = chosen_kind(options);
+  if (kind == "masks") return make_masks(input, options);
+  if (kind == "learned") return make_learned(input, options);
+  if (kind == "background") return make_background(input, options, progress);
+  return error("segmenter '{}': unknown; known are auto, background, learned, masks", kind);
 }
 
 }  // namespace silpose

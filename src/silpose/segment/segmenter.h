@@ -1,6 +1,6 @@
-// Segmenter: picture to mask of the subject, by a background model, or by masks that are given; and how far the mask
-// can be trusted. Based on: background_model.h, OpenCV's mixtures (references.bib: zivkovic2004, zivkovic2006),
-// clean_up.h. Threads: one thread per segmenter; works on all cores itself.
+// Segmenter: picture to mask of the subject, by a background model, by a trained network, or by masks that are given;
+// and how far the mask can be trusted. Based on: background_model.h, OpenCV's mixtures (references.bib: zivkovic2004,
+// zivkovic2006), person_network.h, clean_up.h. Threads: one thread per segmenter; works on all cores itself.
 #pragma once
 
 #include <cstdint>
@@ -38,13 +38,14 @@ class Segmenter {
   // What the user should know about this input, one line each; may grow while it runs.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 
-  // "background auto", "background online", "masks", ...: for the result's settings.
+  // "background auto", "background online", "learned", "masks", ...: for the result's settings.
   [[nodiscard]] virtual std::string name() const = 0;
 };
 
 struct SegmenterOptions {
-  std::string kind = "auto";        // auto, background, masks
-  std::string background = "auto";  // auto, online, online:knn, lead-in:SECONDS, a video, a picture
+  std::string kind = "auto";  // auto, background, learned, masks
+  std::string background;     // auto, online, online:knn, lead-in:SECONDS, a video, a picture; empty: none is asked for
+  std::string networks;       // folder of what scripts/fetch-network-data fetches
   // A directory, a pattern, a video; empty with kind masks: the input itself. As many as frames belong to them in
   // order, otherwise mask number i to frame number i.
   std::string masks;
@@ -53,9 +54,11 @@ struct SegmenterOptions {
 };
 
 // For one camera's input as open_video() takes it. Reads the input, or its lead-in, once where a background is learned
-// from it. `auto` is masks where masks are given and background otherwise; a live input's background is learned online.
+// from it. `auto` is masks where masks are given, background where one is asked for, otherwise learned if `networks` is
+// there and background `auto` if not; a live input's background is learned online.
 // Errors: unknown kind or background; the input, the plate or the masks cannot be read, or have another size than the
-// input; masks that end before the frames do; no frame in the lead-in; stopped by the progress sink.
+// input; masks that end before the frames do; no frame in the lead-in; the networks
+// are not there or damaged; stopped by the progress sink.
 Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, const SegmenterOptions& options = {},
                                                   ProgressSink* progress = nullptr);
 

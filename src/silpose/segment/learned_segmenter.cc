@@ -1,0 +1,138 @@
+#include "silpose/segment/learned_segmenter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "silpose/segment/trust_monitor.h"
+
+namespace silpose {
+namespace {
+
+// Looked at again where it thinks a person is, the network comes to believe in one: what is new has to convince it at
+// first sight.
+constexpr double kPresentAtFirst = 0.8, kStillPresent = 0.5;
+constexpr int kMaxLooks = 8;      // until the square fits the person
+constexpr int kSearchEvery = 10;  // pictures without anybody, in which small persons are sought, too
+constexpr double kMinSide = 24;   // px, of a square with a person
+
+bool is_settled(const PictureSquare& before, const PictureSquare& after) {
+  const double turned = std::remainder(after.turn_rad - before.turn_rad, 2 * std::numbers::pi);
+  return std::hypot(after.x - before.x, after.y - before.y) < 0.02 * after.side &&
+         std::abs(after.side - before.side) < 0.02 * after.side && std::abs(turned) < 0.03;
+}
+
+class LearnedSegmenter : public Segmenter {
+ public:
+  LearnedSegmenter(PersonNetwork network, PersonDetector detector, const CleanUpOptions& clean_up)
+      : network_(std::move(network)), detector_(std::move(detector)), clean_up_(clean_up) {}
+
+  Result<Segmentation> segment(const ByteImage& image, int64_t /*index*/) override {
+    std::optional<PersonReading> reading;
+    if (square_) {
+      reading = network_.read(image, *square_);
+      if (!can_go_on(*reading, kStillPresent)) {
+        reading.reset();
+        ++num_lost_;
+      }
+    }
+    if (!reading) reading = find(image);
+    Mask mask(image.width(), image.height());
+    if (reading) mask = choose_blob(reading->mask_in_picture(image.width(), image.height()), clean_up_);
+    square_.reset();
+    if (mask.count() > 0) square_ = reading->next_square();
+    num_without_ = square_ ? 0 : num_without_ + 1;
+    return monitor_.judge(std::move(mask));
+  }
+
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    std::vector<std::string> warnings;
+    if (num_lost_ > 0) {
+      warnings.push_back(
+          fmt::format("the person was lost {} time{} and sought anew: it may have become another (--region helps)",
+                      num_lost_, num_lost_ == 1 ? "" : "s"));
+    }
+    if (saw_others_)
+      warnings.emplace_back("several people are in the picture; the largest is followed (--region helps)");
+    return warnings;
+  }
+  [[nodiscard]] std::string name() const override { return "learned"; }
+
+ private:
+  static bool can_go_on(const PersonReading& reading, double least_presence) {
+    const PictureSquare next = reading.next_square();
+    return reading.presence >= least_presence && next.side >= kMinSide && next.side < 1e5;
+  }
+
+  std::optional<PersonReading> find(const ByteImage& image) {
+    Box area{0, 0, image.width(), image.height()};
+    if (clean_up_.region) area = *clean_up_.region;
+    const double longer = std::max(area.width, area.height), shorter = std::min(area.width, area.height);
+    const int num_levels = num_without_ % kSearchEvery == 0 ? 3 : 1;
+    for (int level = 0; level < num_levels; ++level) {
+      const double side = level == 0 ? longer : shorter / level;
+      std::vector<PersonDetection> found;
+      for (const PictureSquare& tile : tiles(area, side)) {
+        for (const PersonDetection& detection : detector_.detect(image, tile)) {
+          const PictureSquare& at = detection.square;
+          if (at.side >= kMinSide && at.x >= area.x && at.x < area.x + area.width && at.y >= area.y &&
+              at.y < area.y + area.height) {
+            found.push_back(detection);
+          }
+        }
+      }
+      saw_others_ = saw_others_ || (level == 0 && found.size() > 1);
+      std::ranges::stable_sort(found, std::greater<>(),
+                               [](const PersonDetection& detection) { return detection.square.side; });
+      for (const PersonDetection& detection : found) {
+        PersonReading reading = network_.read(image, detection.square);
+        if (!can_go_on(reading, kPresentAtFirst)) continue;
+        for (int look = 1; look < kMaxLooks && !is_settled(reading.square, reading.next_square()); ++look) {
+          PersonReading again = network_.read(image, reading.next_square());
+          if (!can_go_on(again, kStillPresent)) break;
+          reading = std::move(again);
+        }
+        return reading;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // Upright squares that cover the area and overlap by half.
+  static std::vector<PictureSquare> tiles(const Box& area, double side) {
+    const auto count = [&](int length) { return std::max(1, static_cast<int>(std::ceil(2 * length / side)) - 1); };
+    const auto middle = [&](int start, int length, int i, int n) {
+      if (n == 1) return start + 0.5 * length;
+      return start + 0.5 * side + i * (length - side) / (n - 1);
+    };
+    const int columns = count(area.width), rows = count(area.height);
+    std::vector<PictureSquare> squares;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        squares.push_back(
+            {middle(area.x, area.width, column, columns), middle(area.y, area.height, row, rows), side, 0});
+      }
+    }
+    return squares;
+  }
+
+  PersonNetwork network_;
+  PersonDetector detector_;
+  CleanUpOptions clean_up_;
+  TrustMonitor monitor_;
+  std::optional<PictureSquare> square_;  // where the person is looked for next
+  int num_without_ = 0;                  // pictures since somebody was seen
+  int num_lost_ = 0;
+  bool saw_others_ = false;
+};
+
+}  // namespace
+
+std::unique_ptr<Segmenter> make_learned_segmenter(PersonNetwork network, PersonDetector detector,
+                                                  const CleanUpOptions& clean_up) {
+  return std::make_unique<LearnedSegmenter>(std::move(network), std::move(detector), clean_up);
+}
+
+}  // namespace silpose

@@ -1,0 +1,73 @@
+// PersonNetwork: in a square of the picture, the mask of the person in it and the landmarks of the body, by a trained
+// network; and PersonDetector, which says where such squares are.
+// Based on: BlazePose (references.bib: bazarevsky2020) and the weights that scripts/fetch-network-data fetches; the
+// rule of its anchors is that of SSD (references.bib: liu2016ssd). Threads: one thread per object; works on all cores
+// itself.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "silpose/base/result.h"
+#include "silpose/image/image.h"
+#include "silpose/image/mask.h"
+#include "silpose/segment/picture_square.h"
+#include "silpose/segment/tflite_network.h"
+
+namespace silpose {
+
+struct PersonLandmark {
+  double x = 0, y = 0;    // in the picture
+  double visibility = 0;  // 0 to 1
+};
+
+// Of the landmarks, the 33 of the body come first; then the middle of the person and a point straight above it.
+inline constexpr size_t kPersonMiddle = 33, kAbovePerson = 34, kNumPersonLandmarks = 39;
+
+struct PersonReading {
+  double presence = 0;                    // 0 to 1: whether a person is there at all
+  std::vector<PersonLandmark> landmarks;  // [39]
+  PictureSquare square;                   // where this was read
+  std::vector<float> mask_logits;         // [256, 256] of the square; above 0: person
+
+  // Where to look for the same person again.
+  [[nodiscard]] PictureSquare next_square() const;
+  [[nodiscard]] Mask mask_in_picture(int width, int height) const;
+};
+
+class PersonNetwork {
+ public:
+  // Errors: the file is not in that folder, damaged, or another network.
+  static Result<PersonNetwork> load(const std::filesystem::path& folder);
+
+  // Of a picture [H, W, 3] in B, G, R.
+  PersonReading read(const ByteImage& image, const PictureSquare& square);
+
+ private:
+  explicit PersonNetwork(TfliteNetwork network) : network_(std::move(network)) {}
+  TfliteNetwork network_;
+};
+
+struct PersonDetection {
+  double score = 0;      // 0 to 1
+  PictureSquare square;  // for PersonNetwork::read()
+};
+
+class PersonDetector {
+ public:
+  // Errors: as PersonNetwork::load().
+  static Result<PersonDetector> load(const std::filesystem::path& folder);
+
+  // Persons whom an upright square of the picture shows, the surest first, none twice. One who fills less than about a
+  // fifth of it is not seen.
+  std::vector<PersonDetection> detect(const ByteImage& image, const PictureSquare& square);
+
+ private:
+  explicit PersonDetector(TfliteNetwork network) : network_(std::move(network)) {}
+  TfliteNetwork network_;
+};
+
+// Whether a folder has what both need.
+bool has_person_networks(const std::filesystem::path& folder);
+
+}  // namespace silpose

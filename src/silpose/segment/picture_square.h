@@ -1,0 +1,34 @@
+// PictureSquare: a square of a picture, which may be turned, shown to a network, and what the network says about it put
+// back in its place. Points are in pixels whose corners are whole numbers: the middle of the first is (0.5, 0.5).
+// Threads: values and functions without state.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "silpose/image/image.h"
+#include "silpose/image/mask.h"
+
+namespace silpose {
+
+struct PictureSquare {
+  double x = 0, y = 0;  // its middle
+  double side = 0;      // may reach beyond the picture
+  double turn_rad = 0;  // clockwise as one sees it; 0: upright
+
+  // A point of the square, from (0, 0) top left to (1, 1) bottom right, in the picture.
+  [[nodiscard]] std::array<double, 2> in_picture(double u, double v) const;
+};
+
+// Of `side` = 2.5 times the distance from (x, y), its middle, to (up_x, up_y), which lies straight above in it.
+PictureSquare square_around(double x, double y, double up_x, double up_y);
+
+// [size, size, 3] R, G, B from 0 to 1 of a picture [H, W, 3] in B, G, R, smoothed before it is made smaller; 0 outside
+// of the picture. REQUIRES: a positive side.
+std::vector<float> sample_square(const ByteImage& image, const PictureSquare& square, int size);
+
+// Where `values` [size, size] of the square, interpolated, are above 0, in a picture of width x height.
+Mask positive_in_picture(const std::vector<float>& values, int size, const PictureSquare& square, int width,
+                         int height);
+
+}  // namespace silpose
