@@ -1,6 +1,7 @@
 #include "silpose/segment/learned_segmenter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -14,9 +15,10 @@ namespace {
 // Looked at again where it thinks a person is, the network comes to believe in one: what is new has to convince it at
 // first sight.
 constexpr double kPresentAtFirst = 0.8, kStillPresent = 0.5;
-constexpr int kMaxLooks = 8;      // until the square fits the person
-constexpr int kSearchEvery = 10;  // pictures without anybody, in which small persons are sought, too
-constexpr double kMinSide = 24;   // px, of a square with a person
+constexpr int kMaxLooks = 8;                              // until the square fits the person
+constexpr std::array<double, 3> kZooms = {1, 1.75, 3.5};  // small persons are sought in parts of the picture,
+constexpr int kSearchEvery = 10;                          // but not in every picture without anybody
+constexpr double kMinSide = 24;                           // px, of a square with a person
 
 bool is_settled(const PictureSquare& before, const PictureSquare& after) {
   const double turned = std::remainder(after.turn_rad - before.turn_rad, 2 * std::numbers::pi);
@@ -69,10 +71,9 @@ class LearnedSegmenter : public Segmenter {
   std::optional<PersonReading> find(const ByteImage& image) {
     Box area{0, 0, image.width(), image.height()};
     if (clean_up_.region) area = *clean_up_.region;
-    const double longer = std::max(area.width, area.height), shorter = std::min(area.width, area.height);
-    const int num_levels = num_without_ % kSearchEvery == 0 ? 3 : 1;
-    for (int level = 0; level < num_levels; ++level) {
-      const double side = level == 0 ? longer : shorter / level;
+    const size_t num_levels = num_without_ % kSearchEvery == 0 ? kZooms.size() : 1;
+    for (size_t level = 0; level < num_levels; ++level) {
+      const double side = std::max(area.width, area.height) / kZooms[level];
       std::vector<PersonDetection> found;
       for (const PictureSquare& tile : tiles(area, side)) {
         for (const PersonDetection& detection : detector_.detect(image, tile)) {

@@ -1,0 +1,99 @@
+#include "silpose/segment/learned_segmenter.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "silpose/image/image_file.h"
+#include "silpose/synth/colour_scene.h"
+
+namespace silpose {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kNetworks = SILPOSE_DATA_DIR "/networks";  // of scripts/fetch-network-data
+
+// A rendered person who sways; nobody in the first three frames.
+const SyntheticSequence& sequence() {
+  static const SyntheticSequence made = [] {
+    auto body =
+        std::make_shared<const BodyModel>(level_of_detail(load_body(SILPOSE_DATA_DIR "/human.body").value(), 3000));
+    const SyntheticMotion motion = make_motion("sway", *body, {.num_frames = 4}).value();
+    return make_sequence(body, motion, {.width = 480, .height = 360, .focal_px = 520, .lead_in = 3}).value();
+  }();
+  return made;
+}
+
+std::unique_ptr<Segmenter> segmenter(const CleanUpOptions& clean_up = {}) {
+  return make_learned_segmenter(PersonNetwork::load(kNetworks).value(), PersonDetector::load(kNetworks).value(),
+                                clean_up);
+}
+
+TEST(LearnedSegmenter, CutsOutARenderedPersonAndNobodyBefore) {
+  const ColourScene scene(sequence(), 0);
+  const auto learned = segmenter();
+  EXPECT_EQ(learned->name(), "learned");
+  for (int frame = 0; frame < sequence().num_frames(); ++frame) {
+    const Segmentation found = learned->segment(scene.draw(frame), frame).value();
+    EXPECT_EQ(found.nothing_found, frame < 3) << frame;
+    if (frame < 3) continue;
+    EXPECT_GT(intersection_over_union(found.mask, true_mask(sequence(), 0, frame)), 0.85) << frame;
+  }
+  EXPECT_THAT(learned->warnings(), IsEmpty());
+}
+
+TEST(LearnedSegmenter, SaysWhenThePersonWasLost) {
+  const ColourScene scene(sequence(), 0);
+  const auto learned = segmenter();
+  EXPECT_FALSE(learned->segment(scene.draw(4), 0).value().nothing_found);
+  EXPECT_TRUE(learned->segment(scene.draw(0), 1).value().nothing_found);
+  EXPECT_FALSE(learned->segment(scene.draw(4), 2).value().nothing_found);
+  EXPECT_THAT(learned->warnings(), testing::ElementsAre(HasSubstr("lost 1 time")));
+}
+
+TEST(LearnedSegmenter, CountsOnlyWhoIsInTheRegion) {
+  const ColourScene scene(sequence(), 0);
+  CleanUpOptions clean_up;
+  clean_up.region = Box{0, 0, 60, 360};
+  EXPECT_TRUE(segmenter(clean_up)->segment(scene.draw(4), 0).value().nothing_found);
+}
+
+TEST(LearnedSegmenter, IsChosenWhereNothingElseIsAskedFor) {
+  const fs::path folder = fs::temp_directory_path() / "silpose_learned_choice";
+  fs::create_directories(folder / "clip");
+  for (int i = 0; i < 3; ++i) {
+    write_image((folder / fmt::format("clip/{}.png", i)).string(), ByteImage(64, 48, 3, 90)).value();
+  }
+  const std::string clip = (folder / "clip").string();
+  EXPECT_EQ(make_segmenter(clip, {.networks = kNetworks}).value()->name(), "learned");
+  EXPECT_EQ(make_segmenter(clip, {.networks = folder.string()}).value()->name(), "background auto");
+  EXPECT_EQ(make_segmenter(clip, {.background = "auto", .networks = kNetworks}).value()->name(), "background auto");
+  EXPECT_EQ(make_segmenter(clip, {.networks = kNetworks, .masks = clip}).value()->name(), "masks");
+  EXPECT_THAT(make_segmenter(clip, {.kind = "learned", .networks = folder.string()}).error().message,
+              HasSubstr("pose_landmark_full.tflite: no such file; scripts/fetch-network-data fetches it"));
+  fs::copy_file(fs::path(kNetworks) / "pose_detection.tflite", folder / "pose_landmark_full.tflite",
+                fs::copy_options::overwrite_existing);
+  EXPECT_THAT(make_segmenter(clip, {.kind = "learned", .networks = folder.string()}).error().message,
+              HasSubstr("no output 'Identity_2'"));
+  fs::remove_all(folder);
+}
+
+// The real file cut short, as a broken download leaves it.
+TEST(PersonNetwork, RefusesACutFile) {
+  const fs::path folder = fs::temp_directory_path() / "silpose_learned_cut";
+  fs::create_directories(folder);
+  const fs::path file = folder / "pose_landmark_full.tflite";
+  for (const size_t size : {size_t{100}, size_t{1'000'000}, size_t{6'440'000}}) {
+    fs::copy_file(fs::path(kNetworks) / file.filename(), file, fs::copy_options::overwrite_existing);
+    fs::resize_file(file, size);
+    EXPECT_THAT(PersonNetwork::load(folder).error().message, HasSubstr("damaged or cut short")) << size;
+  }
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace silpose
