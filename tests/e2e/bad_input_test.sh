@@ -137,6 +137,7 @@ expect_failure 1 'absent.body' "${masks[@]}" --model absent.body
 expect_failure 1 'text.body' "${masks[@]}" --model text.body
 export SILPOSE_DATA=$PWD/no-data
 expect_failure 1 'no-data.*fetch-body-data' "${masks[@]}"
+expect_failure 1 'no-data.*fetch-network-data' segment colour/video.mp4 --segmenter learned --out result
 unset SILPOSE_DATA
 
 # Outputs.

@@ -53,6 +53,13 @@ cmp -s one/poses.csv two/poses.csv && fail "the seed does nothing"
 [[ $(number seen.json frames) == 10 ]] || fail "the lead-in is tracked"
 grep -q '^10,' seen/poses.csv || fail "frame numbers do not count from the video's first image"
 
+# Nothing said about the background: the network knows a person when it sees one, even a rendered one.
+"$silpose" segment colour/video.mp4 --out learned --quiet --json >learned.json
+grep -q '"background": "learned"' learned.json || fail "the person is not cut out by the network"
+[[ $(number learned.json frames_empty) == 10 ]] || fail "somebody was seen in the lead-in, or nobody after it"
+"$silpose" segment colour/video.mp4 --out learned --threads 1 --quiet && "$silpose" segment colour/video.mp4 --out again --quiet
+cmp -s learned/masks/000019.png again/masks/000019.png || fail "another number of threads makes another mask"
+
 # Masks keep the numbers of their names, beside the video and by themselves.
 for input in 'colour/video.mp4 --masks masks/masks' 'masks/masks --segmenter masks'; do
   "$silpose" segment $input --out given --quiet --json >given.json || fail "segment $input: exit $?"

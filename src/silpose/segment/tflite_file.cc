@@ -13,6 +13,8 @@ namespace {
 
 constexpr size_t kMaxFileBytes = size_t{1} << 30;
 constexpr int64_t kMaxElements = int64_t{1} << 26;  // of one tensor
+constexpr int kMaxSize = 1 << 20;                   // of one axis
+constexpr int kMaxStep = 1024;                      // strides and the like
 enum TensorType { kFloat32 = 0, kFloat16 = 1, kInt32 = 2 };
 
 // A table of the file. What lies outside of the file reads as absent, and is remembered in `broken`.
@@ -98,7 +100,7 @@ class Node {
 std::optional<int64_t> volume(const std::vector<int>& shape) {
   int64_t count = 1;
   for (const int size : shape) {
-    if (size < 1 || size > kMaxElements) return std::nullopt;
+    if (size < 1 || size > kMaxSize) return std::nullopt;
     count *= size;
     if (count > kMaxElements) return std::nullopt;
   }
@@ -199,18 +201,18 @@ bool read_options(const Node& options, TfliteOperator& op) {
     op.activation = static_cast<TfliteActivation>(number);
     return number == 0 || number == 1 || number == 3;
   };
+  const auto is_step = [](int step) { return step > 0 && step <= kMaxStep; };
   const auto window = [&] {
     const auto padding = options.scalar<int8_t>(0, 0);
     op.same_padding = padding == 0;
     op.stride_x = options.scalar<int32_t>(1, 0);
     op.stride_y = options.scalar<int32_t>(2, 0);
-    return (padding == 0 || padding == 1) && op.stride_x > 0 && op.stride_y > 0 && op.stride_x < 1024 &&
-           op.stride_y < 1024;
+    return (padding == 0 || padding == 1) && is_step(op.stride_x) && is_step(op.stride_y);
   };
   const auto dilation = [&](int slot) {
     op.dilation_x = options.scalar<int32_t>(slot, 1);
     op.dilation_y = options.scalar<int32_t>(slot + 1, 1);
-    return op.dilation_x > 0 && op.dilation_y > 0 && op.dilation_x < 1024 && op.dilation_y < 1024;
+    return is_step(op.dilation_x) && is_step(op.dilation_y);
   };
   switch (op.op) {
     case TfliteOp::kAdd:
@@ -222,14 +224,14 @@ bool read_options(const Node& options, TfliteOperator& op) {
       return window() && activation(3) && dilation(4);
     case TfliteOp::kDepthwiseConv2d:
       op.depth_multiplier = options.scalar<int32_t>(3, 0);
-      return window() && activation(4) && dilation(5) && op.depth_multiplier > 0;
+      return window() && activation(4) && dilation(5) && is_step(op.depth_multiplier);
     case TfliteOp::kMaxPool2d:
       op.filter_x = options.scalar<int32_t>(3, 0);
       op.filter_y = options.scalar<int32_t>(4, 0);
-      return window() && activation(5) && op.filter_x > 0 && op.filter_y > 0;
+      return window() && activation(5) && is_step(op.filter_x) && is_step(op.filter_y);
     case TfliteOp::kDepthToSpace:
       op.block_size = options.scalar<int32_t>(0, 0);
-      return op.block_size > 0;
+      return is_step(op.block_size);
     case TfliteOp::kResizeBilinear:
       op.align_corners = options.scalar<uint8_t>(2, 0) != 0;
       op.half_pixel_centres = options.scalar<uint8_t>(3, 0) != 0;
