@@ -123,12 +123,18 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
     }
   }
   Mask blob(cut.width(), cut.height());
-  if (cut.bounding_box().empty()) return blob;
+  const Box all = cut.bounding_box();
+  if (all.empty()) return blob;
+
+  // Only what lies around the foreground is worked on, with room for what is grown.
+  const int reach = static_cast<int>(std::lround(0.5 * options.join_gap * cut.height()));
+  const int room = 2 * reach + std::max(options.grow_px, 0) + 2;
+  const int x0 = std::max(all.x - room, 0), x1 = std::min(all.x + all.width + room, cut.width());
+  const int y0 = std::max(all.y - room, 0), y1 = std::min(all.y + all.height + room, cut.height());
 
   // Labelled on a copy that is grown by half of the gap; counted in pixels of the mask itself.
-  const cv::Mat mat = to_mat(cut);
+  const cv::Mat mat = to_mat(cut)(cv::Rect(x0, y0, x1 - x0, y1 - y0));
   cv::Mat joined;
-  const int reach = static_cast<int>(std::lround(0.5 * options.join_gap * cut.height()));
   if (reach > 0) {
     joined = within(mat, reach);
   } else {
@@ -137,15 +143,16 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
   cv::Mat labels;
   const auto count = static_cast<size_t>(cv::connectedComponents(joined, labels, 8, CV_32S));
   std::vector<int64_t> area(count, 0), inside(count, 0);
-  for (int y = 0; y < cut.height(); ++y) {
+  for (int y = 0; y < mat.rows; ++y) {
     const int* row = labels.ptr<int>(y);
-    for (int x = 0; x < cut.width(); ++x) {
-      if (!mat.at<uint8_t>(y, x)) continue;
+    const uint8_t* is_set = mat.ptr(y);
+    for (int x = 0; x < mat.cols; ++x) {
+      if (!is_set[x]) continue;
       const auto label = static_cast<size_t>(row[x]);
       ++area[label];
       const bool in_region =
-          !options.region || (x >= options.region->x && x < options.region->x + options.region->width &&
-                              y >= options.region->y && y < options.region->y + options.region->height);
+          !options.region || (x0 + x >= options.region->x && x0 + x < options.region->x + options.region->width &&
+                              y0 + y >= options.region->y && y0 + y < options.region->y + options.region->height);
       if (in_region) ++inside[label];
     }
   }
@@ -156,14 +163,22 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
     if (best == 0 || area[label] > area[best]) best = label;
   }
   if (best == 0) return blob;
-  for (int y = 0; y < cut.height(); ++y) {
+  Mask part(mat.cols, mat.rows);
+  for (int y = 0; y < mat.rows; ++y) {
     const int* row = labels.ptr<int>(y);
-    for (int x = 0; x < cut.width(); ++x) {
-      if (mat.at<uint8_t>(y, x) && static_cast<size_t>(row[x]) == best) blob.set(x, y);
+    const uint8_t* is_set = mat.ptr(y);
+    for (int x = 0; x < mat.cols; ++x) {
+      if (is_set[x] && static_cast<size_t>(row[x]) == best) part.set(x, y);
     }
   }
   const auto max_hole = static_cast<int64_t>(options.max_hole * static_cast<double>(area[best]));
-  return grow(fill_holes(close_gaps(blob, reach), max_hole), options.grow_px);
+  part = grow(fill_holes(close_gaps(part, reach), max_hole), options.grow_px);
+  for (int y = 0; y < mat.rows; ++y) {
+    for (int x = 0; x < mat.cols; ++x) {
+      if (part.get(x, y)) blob.set(x0 + x, y0 + y);
+    }
+  }
+  return blob;
 }
 
 }  // namespace silpose
