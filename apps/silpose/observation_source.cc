@@ -36,6 +36,36 @@ Box parse_region(const std::string& text) {
   return {whole(0), whole(1), whole(2), whole(3)};
 }
 
+CLI::Validator is_key_colour() {
+  return CLI::Validator(
+      [](const std::string& text) {
+        const auto key = parse_key_colour(text);
+        return key ? std::string() : key.error().message;
+      },
+      "");
+}
+
+// Options that only one segmenter has.
+void check_together(const InputOptions& options) {
+  const auto belongs = [&](const char* option, bool given, const char* segmenter) {
+    if (given && options.segmenter != segmenter)
+      throw UsageError(fmt::format("{}: needs --segmenter {}", option, segmenter));
+  };
+  belongs("--key-colour", options.key_colour != "auto", "chroma");
+  belongs("--depth", !options.depths.empty(), "depth");
+  belongs("--depth-range", !options.depth_range.empty(), "depth");
+  if (options.segmenter == "depth" && options.depths.empty()) throw UsageError("--segmenter depth: needs --depth");
+}
+
+std::optional<DepthRange> parse_depth_range(const std::string& text) {
+  if (text.empty()) return {};
+  const std::vector<double> numbers = parse_numbers("--depth-range", text, 2);
+  if (!(numbers[0] >= 0 && numbers[0] < numbers[1] && numbers[1] <= 65.535)) {
+    throw UsageError(fmt::format("--depth-range: {} is not MIN,MAX in metres, 0 to 65.535", text));
+  }
+  return DepthRange{numbers[0], numbers[1]};
+}
+
 Result<CleanUpOptions> clean_up_options(const InputOptions& options, const Video& video, size_t camera) {
   const auto count = static_cast<size_t>(video.num_cameras());
   CleanUpOptions clean_up;
@@ -61,15 +91,28 @@ Result<CleanUpOptions> clean_up_options(const InputOptions& options, const Video
 void add_input_options(CLI::App& command, InputOptions& options) {
   command.add_option("VIDEO", options.videos, "A file, a folder of pictures, a pattern (img-%06d.png) or camera:N");
   command
-      .add_option("--segmenter", options.segmenter,
-                  "How the person is cut out: masks (given), background, learned (by a network), or auto: the first of "
-                  "these that is asked for, otherwise learned if scripts/fetch-network-data has run")
+      .add_option(
+          "--segmenter", options.segmenter,
+          "How the person is cut out: masks (given), background, learned (by a network), chroma, depth, or auto: "
+          "the first of masks and background that is asked for, otherwise learned if scripts/fetch-network-data "
+          "has run")
       ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "background", "learned", "masks"}));
+      ->check(CLI::IsMember({"auto", "background", "chroma", "depth", "learned", "masks"}));
   command
       .add_option("--background", options.backgrounds,
                   "auto (from the whole clip), online, lead-in:SECONDS, or a video or picture of the empty scene")
       ->allow_extra_args(false);
+  command
+      .add_option("--key-colour", options.key_colour,
+                  "With chroma: the screen's, as #00b140; auto: the commonest saturated colour of the clip")
+      ->capture_default_str()
+      ->check(is_key_colour());
+  command
+      .add_option("--depth", options.depths,
+                  "With depth: a folder or pattern of 16-bit pictures in mm, one a frame, once a camera")
+      ->allow_extra_args(false);
+  command.add_option("--depth-range", options.depth_range,
+                     "MIN,MAX in metres: what lies between is the person; without, what stands before the scene");
   command.add_option("--masks", options.masks, "Masks made elsewhere: a folder, a pattern or a video, once a camera")
       ->allow_extra_args(false);
   command
@@ -96,6 +139,7 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
   if (options.start_s && options.end_s && *options.end_s < *options.start_s) {
     throw UsageError(fmt::format("--start {}: is after --end {}", *options.start_s, *options.end_s));
   }
+  check_together(options);
   ObservationSource source;
   source.options_ = options;
   Result<Video> video = open_video(options.videos, options.video_options());
@@ -119,6 +163,9 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
     segmenter.background = of_camera("--background", options.backgrounds, camera, count, "");
     segmenter.networks = (data_directory() / "networks").string();
     segmenter.masks = of_camera("--masks", options.masks, camera, count, "");
+    segmenter.key_colour = parse_key_colour(options.key_colour).value();
+    segmenter.depth = of_camera("--depth", options.depths, camera, count, "");
+    segmenter.depth_range = parse_depth_range(options.depth_range);
     segmenter.default_fps = options.video_options().default_fps;
     const Result<CleanUpOptions> clean_up = clean_up_options(options, opened, camera);
     if (!clean_up) return clean_up.failure();

@@ -21,6 +21,8 @@ struct InputOptions {
   std::vector<std::string> videos;
   std::string segmenter = "auto";
   std::vector<std::string> masks, backgrounds, regions, garbage_masks;  // one for all, or one a camera
+  std::string key_colour = "auto", depth_range;
+  std::vector<std::string> depths;  // one a camera
   int grow_px = 0;
   std::optional<int> min_blob_px;     // absent: the segmenter's own
   std::optional<double> default_fps;  // 30 and a warning where it is needed and not given

@@ -5,8 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
-#include <opencv2/core/mat.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/camera_choice.h"
@@ -70,18 +68,11 @@ Result<PinholeCamera> choose_camera(const RenderOptions& options, const std::sha
 
 // 16-bit, millimetres; 0 where there is nothing.
 Result<void> write_depth(const std::filesystem::path& path, const Image<float>& depth) {
-  cv::Mat millimetres(depth.height(), depth.width(), CV_16UC1);
-  for (int y = 0; y < depth.height(); ++y) {
-    for (int x = 0; x < depth.width(); ++x) {
-      millimetres.at<uint16_t>(y, x) =
-          static_cast<uint16_t>(std::clamp(std::lround(depth.at(x, y) * 1000), 0L, 65535L));
-    }
+  DepthImage millimetres(depth.width(), depth.height());
+  for (size_t i = 0; i < depth.pixels().size(); ++i) {
+    millimetres.pixels()[i] = static_cast<uint16_t>(std::clamp(std::lround(depth.pixels()[i] * 1000), 0L, 65535L));
   }
-  try {
-    if (cv::imwrite(path.string(), millimetres)) return {};
-  } catch (const cv::Exception&) {  // said below
-  }
-  return error("{}: cannot be written", path.string());
+  return write_depth_image(path, millimetres);
 }
 
 Result<Outcome> run_render(const RenderOptions& options, Console& console) {

@@ -45,6 +45,9 @@ expect_failure 2 'resampling' "${masks[@]}" --resampling raffle
 expect_failure 2 'segmenter' "${track[@]}" truth/masks --segmenter magic
 expect_failure 2 'preset' "${masks[@]}" --preset magic
 expect_failure 2 'region' "${masks[@]}" --region 1,2,3
+expect_failure 2 'key-colour.*chartreuse' "${track[@]}" colour/video.mp4 --segmenter chroma --key-colour chartreuse
+expect_failure 2 'key-colour.*#888888.*grey' "${track[@]}" colour/video.mp4 --segmenter chroma --key-colour '#888888'
+expect_failure 2 'key-colour.*segmenter chroma' "${track[@]}" colour/video.mp4 --key-colour '#00b140'
 expect_failure 2 'start' "${masks[@]}" --start 2 --end 1
 for option in start end fps sigma-deg sharpness resample-below regenerate; do
   expect_failure 2 "$option" "${masks[@]}" --$option nan
@@ -95,6 +98,42 @@ mkdir few && cp truth/masks/000000.png truth/masks/000001.png few
 expect_failure 1 'few' "${track[@]}" colour/video.mp4 --masks few
 expect_failure 1 'other/masks/000000.png' "${masks[@]}" --garbage-mask other/masks/000000.png
 expect_failure 1 'lead-in' "${track[@]}" colour/video.mp4 --background lead-in:60
+
+expect_failure 1 'colour/video.mp4.*no screen' "${track[@]}" colour/video.mp4 --segmenter chroma --key-colour '#0000ff'
+
+# Depth.
+depth() {  # FOLDER COUNT WIDTH HEIGHT BITS: flat depth pictures, 16-bit or 8-bit grey
+  mkdir "$1"
+  python3 - "$@" <<'PYTHON'
+import struct
+import sys
+import zlib
+
+folder, count, width, height, bits = sys.argv[1], *map(int, sys.argv[2:])
+chunk = lambda kind, body: struct.pack('>I', len(body)) + kind + body + struct.pack('>I', zlib.crc32(kind + body))
+rows = (b'\0' + b'\x07\xd0'[: bits // 8] * width) * height
+for i in range(count):
+    with open(f'{folder}/{i:06}.png', 'wb') as file:
+        file.write(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', width, height, bits, 0, 0, 0, 0)) +
+                   chunk(b'IDAT', zlib.compress(rows)) + chunk(b'IEND', b''))
+PYTHON
+}
+depth deep 3 160 120 16
+depth shallow 3 160 120 8
+depth wide 3 200 120 16
+depth short 1 160 120 16
+by_depth=("${track[@]}" colour/video.mp4 --segmenter depth)
+"$silpose" segment colour/video.mp4 --segmenter depth --depth deep --depth-range 1,3 --out near --quiet >log.txt ||
+  fail "depth pictures are refused"
+expect_failure 2 'segmenter depth.*--depth' "${by_depth[@]}"
+expect_failure 2 'depth.*segmenter depth' "${track[@]}" colour/video.mp4 --depth deep
+expect_failure 2 'depth-range.*2,1' "${by_depth[@]}" --depth deep --depth-range 2,1
+expect_failure 2 'depth-range' "${by_depth[@]}" --depth deep --depth-range near
+expect_failure 2 'depth-range' "${by_depth[@]}" --depth deep --depth-range 1,nan
+expect_failure 1 'absent' "${by_depth[@]}" --depth absent
+expect_failure 1 'shallow/000000.png.*8 bits' "${by_depth[@]}" --depth shallow
+expect_failure 1 'wide/000000.png.*200x120.*160x120' "${by_depth[@]}" --depth wide
+expect_failure 1 'short: 1 depth images for 3 frames' "${by_depth[@]}" --depth short
 
 # Poses.
 sed '1s/abdomen/tummy/' truth/poses.csv >columns.csv

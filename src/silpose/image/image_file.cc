@@ -30,7 +30,8 @@ bool is_cut_off(std::string_view bytes) {
   return false;
 }
 
-Result<ByteImage> read_image(const std::filesystem::path& path, int channels) {
+// A picture as OpenCV reads it under `flags`.
+Result<cv::Mat> decode(const std::filesystem::path& path, int flags) {
   std::error_code code;
   if (!std::filesystem::exists(path, code)) return error("{}: no such file", path.string());
   if (!std::filesystem::is_regular_file(path, code)) return error("{}: not a file", path.string());
@@ -42,14 +43,35 @@ Result<ByteImage> read_image(const std::filesystem::path& path, int channels) {
   cv::Mat decoded;
   try {
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
-    decoded = cv::imdecode(encoded, channels == 1 ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
+    decoded = cv::imdecode(encoded, flags);
   } catch (const cv::Exception&) {  // of a size that OpenCV refuses
     decoded.release();
   }
   if (decoded.empty()) return error("{}: not a picture", path.string());
-  ByteImage image(decoded.cols, decoded.rows, channels);
-  decoded.copyTo(cv::Mat(image.height(), image.width(), CV_8UC(channels), image.pixels().data()));
+  return decoded;
+}
+
+Result<ByteImage> read_image(const std::filesystem::path& path, int channels) {
+  const Result<cv::Mat> decoded = decode(path, channels == 1 ? cv::IMREAD_GRAYSCALE : cv::IMREAD_COLOR);
+  if (!decoded) return decoded.failure();
+  ByteImage image(decoded->cols, decoded->rows, channels);
+  decoded->copyTo(cv::Mat(image.height(), image.width(), CV_8UC(channels), image.pixels().data()));
   return image;
+}
+
+Result<void> encode(const std::filesystem::path& path, const cv::Mat& picture) {
+  std::vector<uint8_t> encoded;
+  try {
+    if (!cv::imencode(path.extension().string(), picture, encoded)) encoded.clear();
+  } catch (const cv::Exception&) {
+    encoded.clear();
+  }
+  if (encoded.empty()) return error("{}: no picture format for this name", path.string());
+  std::ofstream stream(path, std::ios::binary);
+  stream.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
+  stream.close();
+  if (!stream) return error("{}: cannot be written", path.string());
+  return {};
 }
 
 }  // namespace
@@ -66,20 +88,26 @@ Result<Mask> read_mask(const std::filesystem::path& path) {
 Result<void> write_image(const std::filesystem::path& path, const ByteImage& image) {
   check(!image.empty() && (image.channels() == 1 || image.channels() == 3), "write_image: {}x{}x{}", image.width(),
         image.height(), image.channels());
-  std::vector<uint8_t> encoded;
-  try {
-    const cv::Mat view(image.height(), image.width(), CV_8UC(image.channels()),
-                       const_cast<uint8_t*>(image.pixels().data()));
-    if (!cv::imencode(path.extension().string(), view, encoded)) encoded.clear();
-  } catch (const cv::Exception&) {
-    encoded.clear();
+  return encode(path, cv::Mat(image.height(), image.width(), CV_8UC(image.channels()),
+                              const_cast<uint8_t*>(image.pixels().data())));
+}
+
+Result<DepthImage> read_depth_image(const std::filesystem::path& path) {
+  const Result<cv::Mat> decoded = decode(path, cv::IMREAD_UNCHANGED);
+  if (!decoded) return decoded.failure();
+  if (decoded->type() != CV_16UC1) {
+    return error("{}: {} channels of {} bits, depth is one of 16 (millimetres)", path.string(), decoded->channels(),
+                 8 * decoded->elemSize1());
   }
-  if (encoded.empty()) return error("{}: no picture format for this name", path.string());
-  std::ofstream stream(path, std::ios::binary);
-  stream.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
-  stream.close();
-  if (!stream) return error("{}: cannot be written", path.string());
-  return {};
+  DepthImage image(decoded->cols, decoded->rows);
+  decoded->copyTo(cv::Mat(image.height(), image.width(), CV_16UC1, image.pixels().data()));
+  return image;
+}
+
+Result<void> write_depth_image(const std::filesystem::path& path, const DepthImage& image) {
+  check(!image.empty() && image.channels() == 1, "write_depth_image: {}x{}x{}", image.width(), image.height(),
+        image.channels());
+  return encode(path, cv::Mat(image.height(), image.width(), CV_16UC1, const_cast<uint16_t*>(image.pixels().data())));
 }
 
 Result<void> write_mask(const std::filesystem::path& path, const Mask& mask) {

@@ -2,6 +2,7 @@
 // Threads: functions without state.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "silpose/base/result.h"
@@ -14,6 +15,12 @@ namespace silpose {
 Result<ByteImage> read_colour_image(const std::filesystem::path& path);  // 3 channels B, G, R
 Result<ByteImage> read_grey_image(const std::filesystem::path& path);    // 1 channel
 Result<Mask> read_mask(const std::filesystem::path& path);               // white (>= 128) is set
+
+// Millimetres along the viewing axis, 0 where unknown; 16 bits. Errors: as above; not one channel of 16 bits; not
+// writable.
+using DepthImage = Image<uint16_t>;
+Result<DepthImage> read_depth_image(const std::filesystem::path& path);
+Result<void> write_depth_image(const std::filesystem::path& path, const DepthImage& image);
 
 // 1 or 3 channels; the format is told by the extension. Errors: not writable.
 Result<void> write_image(const std::filesystem::path& path, const ByteImage& image);

@@ -51,6 +51,17 @@ TEST_F(ImageFileTest, PngRoundTripIsExactAndKeepsChannelOrder) {
   EXPECT_EQ(repeated.at(3, 4, 2), grey.at(3, 4));
 }
 
+TEST_F(ImageFileTest, DepthRoundTripKeepsSixteenBitsAndNothingElseIsDepth) {
+  DepthImage depth(5, 3);
+  for (size_t i = 0; i < 15; ++i) depth.pixels()[i] = static_cast<uint16_t>(4096 * i + 7);
+  ASSERT_TRUE(write_depth_image(folder_ / "depth.png", depth).ok());
+  EXPECT_EQ(read_depth_image(folder_ / "depth.png").value(), depth);
+  ASSERT_TRUE(write_image(folder_ / "grey.png", gradient(5, 3, 1)).ok());
+  EXPECT_THAT(read_depth_image(folder_ / "grey.png").error().message,
+              HasSubstr("grey.png: 1 channels of 8 bits, depth is one of 16"));
+  EXPECT_THAT(read_depth_image(folder_ / "none.png").error().message, HasSubstr("no such file"));
+}
+
 TEST_F(ImageFileTest, MaskRoundTrip) {
   const Mask mask = mask_from_text("..#\n##.\n...\n.#.");
   ASSERT_TRUE(write_mask(folder_ / "mask.png", mask).ok());

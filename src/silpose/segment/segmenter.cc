@@ -7,6 +7,8 @@
 #include "silpose/image/video.h"
 #include "silpose/segment/background_model.h"
 #include "silpose/segment/background_segmenter.h"
+#include "silpose/segment/chroma_segmenter.h"
+#include "silpose/segment/depth_segmenter.h"
 #include "silpose/segment/given_masks.h"
 #include "silpose/segment/learned_segmenter.h"
 
@@ -50,6 +52,20 @@ Result<void> check_sizes(const std::string& input, const Video& video, const Cle
   return {};
 }
 
+// What to add to the number of one of `count` pictures (masks, depth), the first numbered `first`, for the number of
+// its frame. As many as frames (a container's own count may be off by one) belong together in their order, whatever
+// number they begin with; others by their numbers.
+Result<int64_t> offset_to_frames(const std::string& name, const char* what, int64_t first, int64_t count,
+                                 const Video& video) {
+  const int64_t num_frames = video.num_frames_hint();
+  const int64_t offset = std::abs(count - num_frames) <= 1 ? video.first_index() - first : 0;
+  const int64_t end = first + offset + count, frames_end = video.first_index() + num_frames;
+  if (count > 0 && num_frames > 0 && (end + 1 < frames_end || first + offset >= frames_end)) {
+    return error("{}: {} {} for {} frames of {}", name, count, what, num_frames, video.name());
+  }
+  return offset;
+}
+
 Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const SegmenterOptions& options) {
   Result<Video> video = open_video(input, {.default_fps = options.default_fps});
   if (!video) return video.failure();
@@ -61,16 +77,10 @@ Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const Se
     return error("{}: masks of {}x{} for pictures of {}x{}", options.masks, masks->width(), masks->height(),
                  video->width(), video->height());
   }
-  // As many masks as frames (a container's own count may be off by one) belong together in their order, whatever number
-  // they begin with; others by their numbers.
-  const int64_t num_masks = masks->num_frames_hint(), num_frames = video->num_frames_hint();
-  const bool in_order = std::abs(num_masks - num_frames) <= 1;
-  const int64_t offset = in_order ? video->first_index() - masks->first_index() : 0;
-  const int64_t masks_end = masks->first_index() + offset + num_masks, frames_end = video->first_index() + num_frames;
-  if (num_masks > 0 && num_frames > 0 && (masks_end + 1 < frames_end || masks->first_index() + offset >= frames_end)) {
-    return error("{}: {} masks for {} frames of {}", options.masks, num_masks, num_frames, input);
-  }
-  return make_given_masks(std::move(*masks), offset, options.clean_up);
+  const Result<int64_t> offset =
+      offset_to_frames(options.masks, "masks", masks->first_index(), masks->num_frames_hint(), *video);
+  if (!offset) return offset.failure();
+  return make_given_masks(std::move(*masks), *offset, options.clean_up);
 }
 
 // A picture, or a clip of the empty scene.
@@ -158,6 +168,37 @@ Result<std::unique_ptr<Segmenter>> make_learned(const std::string& input, const 
   return make_learned_segmenter(std::move(*network), std::move(*detector), options.clean_up);
 }
 
+Result<std::unique_ptr<Segmenter>> make_chroma(const std::string& input, const SegmenterOptions& options,
+                                               ProgressSink* progress) {
+  Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  if (!video) return video.failure();
+  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
+  if (video->is_live())
+    return error("{}: the screen is learned from the whole clip, which a live camera has not", input);
+  const Result<BackgroundSamples> samples = sample_background(*video, {}, progress);
+  if (!samples) return samples.failure();
+  Result<ScreenModel> model = learn_screen(*samples, options.key_colour, options.clean_up.garbage_mask);
+  if (!model) return error("{}: {}", input, model.error().message);
+  return make_chroma_segmenter(std::move(*model), input, options.clean_up);
+}
+
+Result<std::unique_ptr<Segmenter>> make_depth(const std::string& input, const SegmenterOptions& options,
+                                              ProgressSink* progress) {
+  if (options.depth.empty()) return error("segmenter 'depth': no depth images are given");
+  Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  if (!video) return video.failure();
+  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
+  Result<PictureList> files = list_pictures(options.depth);
+  if (!files) return files.failure();
+  DepthFiles depth{.name = options.depth, .files = std::move(*files)};
+  const Result<int64_t> offset =
+      offset_to_frames(depth.name, "depth images", depth.first_number(), std::ssize(depth.files.paths), *video);
+  if (!offset) return offset.failure();
+  depth.offset = *offset;
+  return make_depth_segmenter(std::move(depth), video->width(), video->height(), options.depth_range, options.clean_up,
+                              progress);
+}
+
 std::string chosen_kind(const SegmenterOptions& options) {
   if (options.kind != "auto") return options.kind;
   if (!options.masks.empty()) return "masks";
@@ -173,7 +214,9 @@ Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, cons
   if (kind == "masks") return make_masks(input, options);
   if (kind == "learned") return make_learned(input, options);
   if (kind == "background") return make_background(input, options, progress);
-  return error("segmenter '{}': unknown; known are auto, background, learned, masks", kind);
+  if (kind == "chroma") return make_chroma(input, options, progress);
+  if (kind == "depth") return make_depth(input, options, progress);
+  return error("segmenter '{}': unknown; known are auto, background, chroma, depth, learned, masks", kind);
 }
 
 }  // namespace silpose

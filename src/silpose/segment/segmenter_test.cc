@@ -189,6 +189,83 @@ TEST_F(SegmenterTest, SettingsThatCannotBe) {
   EXPECT_THAT(make_segmenter(at("no_clip.mp4")).error().message, HasSubstr("no_clip.mp4: no such file"));
 }
 
+// The scene's subject before a green screen that covers all but the picture's left edge.
+TEST_F(SegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
+  const auto keyed = [&](int i) {
+    ByteImage image = picture(i);
+    const Mask mask = truth(i);
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 12; x < image.width(); ++x) {
+        for (int c = 0; c < 3; ++c) {
+          if (!mask.get(x, y)) image.at(x, y, c) = static_cast<uint8_t>(image.at(x, y, c) / 8 + (c == 1 ? 130 : 20));
+        }
+      }
+    }
+    return image;
+  };
+  fs::create_directories(at("green"));
+  for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("green/{:02}.png", i)), keyed(i)).value();
+  SegmenterOptions options{.kind = "chroma"};
+  auto segmenter = make_segmenter(at("green"), options).value();
+  EXPECT_THAT(segmenter->name(), HasSubstr("chroma #"));
+  EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("8 % of the picture lies outside the screen")));
+  for (const int i : {0, 20, 30}) {
+    const Segmentation result = segmenter->segment(keyed(i), i).value();
+    EXPECT_GT(intersection_over_union(result.mask, truth(i)), 0.97) << i;
+    EXPECT_EQ(result.nothing_found, truth(i).count() == 0) << i;
+  }
+  // With a garbage mask it is the user who says what to leave out.
+  options.clean_up.garbage_mask = Mask(160, 120);
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 0; x < 100; ++x) options.clean_up.garbage_mask->set(x, y);
+  }
+  segmenter = make_segmenter(at("green"), options).value();
+  EXPECT_THAT(segmenter->warnings(), IsEmpty());
+  EXPECT_EQ(segmenter->segment(keyed(45), 45).value().mask.bounding_box(), (Box{0, 0, 12, 120}));
+  EXPECT_THAT(failure({.kind = "chroma"}), HasSubstr("clip: no screen"));
+}
+
+TEST_F(SegmenterTest, DepthSegmentsByItself) {
+  const auto depth = [&](int i) {
+    DepthImage image(scene_.width, scene_.height, 1, 4000);
+    const Mask mask = truth(i);
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) {
+        if (mask.get(x, y)) image.at(x, y) = 3000;
+      }
+    }
+    return image;
+  };
+  fs::create_directories(at("depth"));
+  for (int i = 0; i < kFrames; ++i) write_depth_image(at(fmt::format("depth/{:03}.png", i + 1)), depth(i)).value();
+  SegmenterOptions options{.kind = "depth", .depth = at("depth")};
+  for (const std::optional<DepthRange>& range : {std::optional<DepthRange>(), std::optional(DepthRange{2.5, 3.5})}) {
+    options.depth_range = range;
+    const auto segmenter = make_segmenter(at("clip"), options).value();
+    EXPECT_EQ(segmenter->name(), range ? "depth 2.5 to 3.5 m" : "depth auto");
+    EXPECT_THAT(segmenter->warnings(), IsEmpty());
+    EXPECT_EQ(segmenter->first_index(), 0);  // as many as frames: in order, whatever they are numbered from
+    for (const int i : {0, 25, 49}) EXPECT_EQ(segmenter->segment(picture(i), i).value().mask, truth(i)) << i;
+    EXPECT_THAT(segmenter->segment(picture(49), 50).error().message, HasSubstr("50 depth images, frame 50 has none"));
+  }
+
+  EXPECT_THAT(failure({.kind = "depth"}), HasSubstr("no depth images are given"));
+  EXPECT_THAT(failure({.kind = "depth", .depth = at("none")}), HasSubstr("none: no such file or directory"));
+  EXPECT_THAT(failure({.kind = "depth", .depth = at("clip")}), HasSubstr("3 channels of 8 bits, depth is one of 16"));
+  for (const int number : {48, 49, 50}) fs::remove(at(fmt::format("depth/{:03}.png", number)));
+  EXPECT_THAT(failure({.kind = "depth", .depth = at("depth")}), HasSubstr("47 depth images for 50 frames of"));
+  for (const char* folder : {"few", "small", "flat"}) fs::create_directories(at(folder));
+  for (int i = 0; i < 2; ++i) {
+    write_image(at(fmt::format("few/{}.png", i)), picture(i)).value();
+    write_depth_image(at(fmt::format("small/{}.png", i)), DepthImage(80, 60, 1, 900)).value();
+    write_depth_image(at(fmt::format("flat/{}.png", i)), DepthImage(160, 120, 1, 900)).value();
+  }
+  EXPECT_THAT(make_segmenter(at("few"), {.kind = "depth", .depth = at("small")}).error().message,
+              HasSubstr("small/0.png: depth of 80x60 for pictures of 160x120"));
+  EXPECT_THAT(make_segmenter(at("few"), {.kind = "depth", .depth = at("flat")}).value()->warnings(),
+              ElementsAre(HasSubstr("next to nothing ever stands before the background")));
+}
+
 TEST_F(SegmenterTest, WarnsOfASubjectWhoStays) {
   fs::create_directories(at("still"));
   for (int i = 0; i < 12; ++i) {

@@ -1,0 +1,27 @@
+// What stands nearer than the scene behind it, told from depth images: the farthest that is seen at a pixel over the
+// clip is the background. Based on: a depth threshold (references.bib: shotton2013), here one a pixel that grows with
+// the sensor's noise (references.bib: khoshelham2012). Threads: functions without state.
+#pragma once
+
+#include <span>
+
+#include "silpose/image/image_file.h"
+#include "silpose/image/mask.h"
+
+namespace silpose {
+
+struct DepthRange {
+  double min_m = 0, max_m = 0;
+};
+
+// [H, W] mm: at each pixel the farthest known depth but for one in twenty, so that the subject may stand there for most
+// of the clip; 65535, farther than all, where less than half are known. REQUIRES: at least one image, equal sizes.
+DepthImage learn_depth_background(std::span<const DepthImage> images);
+
+// [H, W] set where the depth is known and nearer than the background by more than noise. REQUIRES: equal sizes.
+Mask nearer_than_background(const DepthImage& depth, const DepthImage& background);
+
+// [H, W] set where the depth lies in the range, ends included.
+Mask within_depth_range(const DepthImage& depth, const DepthRange& range);
+
+}  // namespace silpose
