@@ -15,7 +15,7 @@ namespace silpose {
 namespace {
 
 // Numbers that a fit takes from an outline: what they explain is not left in the residual.
-constexpr double kFittedNumbers = 25;
+constexpr double kFittedNumbers = 15;
 
 // What turns sum_cells D (K * D) into squared pixels along the outline.
 double outline_scale(int cell) {
