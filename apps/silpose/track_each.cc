@@ -64,7 +64,7 @@ Result<Outcome> track_each(const TrackOptions& options, Console& console,
     Result<Outcome> tracked = track(of_clip);
     if (Console::interrupted()) {
       outcome.interrupted = true;
-      if (!tracked) console.error(fmt::format("interrupted; go on with --resume"));
+      if (!tracked) console.error("interrupted; go on with --resume");
       break;
     }
     if (tracked) {

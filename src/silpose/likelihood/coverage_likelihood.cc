@@ -114,6 +114,11 @@ double CoverageEvidence::relative_noise(size_t camera_idx) const {
   return noise[camera_idx] / std::pow(views[camera_idx].pixel_unit, 3);
 }
 
+std::optional<size_t> CoverageEvidence::first_seen() const {
+  const auto seen = std::ranges::find_if(views, [](const View& view) { return view.trust > 0; });
+  return seen == views.end() ? std::nullopt : std::optional(static_cast<size_t>(seen - views.begin()));
+}
+
 CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observations, Blur widest,
                                              Blur narrowest) const {
   check(observations.size() == impl_->cameras.size(), "CoverageLikelihood: {} observations for {} cameras",
@@ -219,6 +224,18 @@ std::vector<double> CoverageLikelihood::estimate_noise(const CoverageEvidence& e
     noise[c] = std::max(noise[c], kLeastNoise);
   }
   return noise;
+}
+
+std::vector<double> CoverageLikelihood::least_noise(const CoverageEvidence& evidence,
+                                                    std::span<const Eigen::VectorXd> poses, Scratch& scratch) const {
+  std::vector<double> least;
+  for (const Eigen::VectorXd& pose : poses) {
+    const std::vector<double> noise =
+        estimate_noise(evidence, {pose.data(), static_cast<size_t>(pose.size())}, scratch);
+    if (least.empty()) least = noise;
+    for (size_t c = 0; c < noise.size(); ++c) least[c] = std::min(least[c], noise[c]);
+  }
+  return least;
 }
 
 NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,

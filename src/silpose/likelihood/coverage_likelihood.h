@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -52,6 +53,9 @@ struct CoverageEvidence {
   // empty.
   void set_noise(std::span<const double> relative);
   [[nodiscard]] double relative_noise(size_t camera_idx) const;
+
+  // The first camera that has a say; nothing where none has.
+  [[nodiscard]] std::optional<size_t> first_seen() const;
 };
 
 // Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps
@@ -111,6 +115,11 @@ class CoverageLikelihood {
   // [C]
   std::vector<double> estimate_noise(const CoverageEvidence& evidence, std::span<const double> pose,
                                      Scratch& scratch) const;
+
+  // The least that one of several poses leaves, camera by camera: the best of them says how good a fit can be. Shapes:
+  // [K] of [D] -> [C].
+  std::vector<double> least_noise(const CoverageEvidence& evidence, std::span<const Eigen::VectorXd> poses,
+                                  Scratch& scratch) const;
 
   [[nodiscard]] const BodyModel& body() const;
   [[nodiscard]] std::span<const PinholeCamera> cameras() const;

@@ -5,31 +5,12 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "silpose/segment/mask_mat.h"
+
 namespace silpose {
 namespace {
 
 constexpr double kMinBlob = 0.0005;  // of the picture
-
-cv::Mat to_mat(const Mask& mask) {
-  cv::Mat mat(mask.height(), mask.width(), CV_8U);
-  for (int y = 0; y < mask.height(); ++y) {
-    uint8_t* row = mat.ptr(y);
-    const auto words = mask.row(y);
-    for (int x = 0; x < mask.width(); ++x) row[x] = (words[static_cast<size_t>(x) >> 6] >> (x & 63)) & 1u ? 255 : 0;
-  }
-  return mat;
-}
-
-Mask from_mat(const cv::Mat& mat) {
-  Mask mask(mat.cols, mat.rows);
-  for (int y = 0; y < mat.rows; ++y) {
-    const uint8_t* row = mat.ptr(y);
-    for (int x = 0; x < mat.cols; ++x) {
-      if (row[x] != 0) mask.set(x, y);
-    }
-  }
-  return mask;
-}
 
 // Where a set pixel lies within `radius`.
 cv::Mat within(const cv::Mat& mat, int radius) {
@@ -44,11 +25,11 @@ Mask close_gaps(const Mask& mask, int radius) {
   if (box.empty() || radius <= 0) return mask;
   const int x0 = std::max(box.x - radius - 1, 0), x1 = std::min(box.x + box.width + radius + 1, mask.width());
   const int y0 = std::max(box.y - radius - 1, 0), y1 = std::min(box.y + box.height + radius + 1, mask.height());
-  cv::Mat mat = to_mat(mask);
+  cv::Mat mat = mat_from_mask(mask);
   cv::Mat around = mat(cv::Rect(x0, y0, x1 - x0, y1 - y0));
   const cv::Mat closed = within(within(around, radius) == 0, radius) == 0;
   closed.copyTo(around);
-  return from_mat(mat);
+  return mask_from_mat(mat);
 }
 
 cv::Mat disc(int radius) {
@@ -74,7 +55,7 @@ void CleanUpOptions::check() const {
 Mask fill_holes(const Mask& mask, int64_t max_area) {
   const Box box = mask.bounding_box();
   if (box.empty() || max_area <= 0) return mask;
-  const cv::Mat mat = to_mat(mask);
+  const cv::Mat mat = mat_from_mask(mask);
   // Within the bounding box every hole is enclosed; what touches the box's border is outside.
   const cv::Mat background = mat(cv::Rect(box.x, box.y, box.width, box.height)) == 0;
   cv::Mat labels, stats, centres;
@@ -100,13 +81,13 @@ Mask fill_holes(const Mask& mask, int64_t max_area) {
 Mask grow(const Mask& mask, int radius_px) {
   if (radius_px == 0 || mask.bounding_box().empty()) return mask;
   const cv::Mat element = disc(std::abs(radius_px));
-  cv::Mat mat = to_mat(mask), result;
+  cv::Mat mat = mat_from_mask(mask), result;
   if (radius_px > 0) {
     cv::dilate(mat, result, element);
   } else {
     cv::erode(mat, result, element);  // OpenCV's default border does not erode
   }
-  return from_mat(result);
+  return mask_from_mat(result);
 }
 
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
@@ -133,7 +114,7 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
   const int y0 = std::max(all.y - room, 0), y1 = std::min(all.y + all.height + room, cut.height());
 
   // Labelled on a copy that is grown by half of the gap; counted in pixels of the mask itself.
-  const cv::Mat mat = to_mat(cut)(cv::Rect(x0, y0, x1 - x0, y1 - y0));
+  const cv::Mat mat = mat_from_mask(cut)(cv::Rect(x0, y0, x1 - x0, y1 - y0));
   cv::Mat joined;
   if (reach > 0) {
     joined = within(mat, reach);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "silpose/base/parallel.h"
+#include "silpose/segment/mask_mat.h"
 
 namespace silpose {
 namespace {
@@ -135,17 +136,6 @@ cv::Mat screen_matte(const Image<float>& project, const ByteImage& luma_chroma) 
   return matte;
 }
 
-cv::Mat to_bytes(const Mask& mask) {
-  const ByteImage image = image_from_mask(mask);
-  return cv::Mat(image.height(), image.width(), CV_8U, const_cast<uint8_t*>(image.pixels().data())).clone();
-}
-
-Mask to_mask(const cv::Mat& bytes) {
-  ByteImage image(bytes.cols, bytes.rows);
-  bytes.copyTo(cv::Mat(bytes.size(), CV_8U, image.pixels().data()));
-  return mask_from_image(image);
-}
-
 // Sets `inside` and `filled`: the convex hull of the large pieces of what is screen in some of the samples, less its
 // very edge.
 void find_extent(const BackgroundSamples& samples, ScreenModel& model) {
@@ -178,7 +168,7 @@ void find_extent(const BackgroundSamples& samples, ScreenModel& model) {
     cv::erode(inside, inside, cv::getStructuringElement(cv::MORPH_ELLIPSE, {edge, edge}));
   }
   model.filled = cv::countNonZero(ever & inside) / std::max(1.0, static_cast<double>(cv::countNonZero(inside)));
-  model.inside = to_mask(inside);
+  model.inside = mask_from_mat(inside);
 }
 
 }  // namespace
@@ -210,7 +200,7 @@ Mask find_before_screen(const ScreenModel& model, const ByteImage& luma_chroma) 
   const cv::Mat picture(matte.size(), CV_8UC3, const_cast<uint8_t*>(luma_chroma.pixels().data()));
   cv::Mat before = matte < 0.5;
   const cv::Rect all(0, 0, matte.cols, matte.rows);
-  cv::Rect around = cv::boundingRect(before & to_bytes(model.inside));
+  cv::Rect around = cv::boundingRect(before & mat_from_mask(model.inside));
   if (!around.empty()) {
     around = cv::Rect(around.x - kEdgeWindow, around.y - kEdgeWindow, around.width + 2 * kEdgeWindow,
                       around.height + 2 * kEdgeWindow) &
@@ -219,7 +209,7 @@ Mask find_before_screen(const ScreenModel& model, const ByteImage& luma_chroma) 
     follow_luma(part, picture(around));
     before = matte < 0.5;
   }
-  return to_mask(before);
+  return mask_from_mat(before);
 }
 
 }  // namespace silpose

@@ -52,6 +52,13 @@ Result<void> check_sizes(const std::string& input, const Video& video, const Cle
   return {};
 }
 
+Result<Video> open_input(const std::string& input, const SegmenterOptions& options) {
+  Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  if (!video) return video;
+  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
+  return video;
+}
+
 // What to add to the number of one of `count` pictures (masks, depth), the first numbered `first`, for the number of
 // its frame. As many as frames (a container's own count may be off by one) belong together in their order, whatever
 // number they begin with; others by their numbers.
@@ -67,9 +74,8 @@ Result<int64_t> offset_to_frames(const std::string& name, const char* what, int6
 }
 
 Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const SegmenterOptions& options) {
-  Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  Result<Video> video = open_input(input, options);
   if (!video) return video.failure();
-  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
   if (options.masks.empty()) return make_given_masks({}, 0, options.clean_up);
   Result<Video> masks = open_video(options.masks, {.default_fps = options.default_fps});
   if (!masks) return masks.failure();
@@ -113,10 +119,9 @@ Result<BackgroundModel> model_from_plate(const std::string& plate, const std::st
 
 Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, const SegmenterOptions& options,
                                                    ProgressSink* progress) {
-  Result<Video> opened = open_video(input, {.default_fps = options.default_fps});
+  Result<Video> opened = open_input(input, options);
   if (!opened) return opened.failure();
   Video& video = *opened;
-  if (const auto fits = check_sizes(input, video, options.clean_up); !fits) return fits.failure();
   const std::string background = options.background.empty() ? "auto" : options.background;
   BackgroundSegmenterOptions made{
       .name = "background " + background, .first_index = 0, .warnings = {}, .clean_up = options.clean_up};
@@ -158,9 +163,8 @@ Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, con
 }
 
 Result<std::unique_ptr<Segmenter>> make_learned(const std::string& input, const SegmenterOptions& options) {
-  const Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  const Result<Video> video = open_input(input, options);
   if (!video) return video.failure();
-  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
   Result<PersonNetwork> network = PersonNetwork::load(options.networks);
   if (!network) return network.failure();
   Result<PersonDetector> detector = PersonDetector::load(options.networks);
@@ -170,9 +174,8 @@ Result<std::unique_ptr<Segmenter>> make_learned(const std::string& input, const 
 
 Result<std::unique_ptr<Segmenter>> make_chroma(const std::string& input, const SegmenterOptions& options,
                                                ProgressSink* progress) {
-  Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  Result<Video> video = open_input(input, options);
   if (!video) return video.failure();
-  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
   if (video->is_live())
     return error("{}: the screen is learned from the whole clip, which a live camera has not", input);
   const Result<BackgroundSamples> samples = sample_background(*video, {}, progress);
@@ -185,9 +188,8 @@ Result<std::unique_ptr<Segmenter>> make_chroma(const std::string& input, const S
 Result<std::unique_ptr<Segmenter>> make_depth(const std::string& input, const SegmenterOptions& options,
                                               ProgressSink* progress) {
   if (options.depth.empty()) return error("segmenter 'depth': no depth images are given");
-  Result<Video> video = open_video(input, {.default_fps = options.default_fps});
+  Result<Video> video = open_input(input, options);
   if (!video) return video.failure();
-  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
   Result<PictureList> files = list_pictures(options.depth);
   if (!files) return files.failure();
   DepthFiles depth{.name = options.depth, .files = std::move(*files)};

@@ -18,10 +18,6 @@ MixtureOptions mixture_options(const TrackerOptions& options) {
   return {.num_hypotheses = *options.num_hypotheses, .seed = options.seed};
 }
 
-std::vector<double> pose_of(const GaussianComponent& hypothesis) {
-  return {hypothesis.pose().begin(), hypothesis.pose().end()};
-}
-
 std::vector<Eigen::VectorXd> poses_of(std::span<const StartingPose> starts) {
   std::vector<Eigen::VectorXd> poses;
   for (const StartingPose& start : starts) {
@@ -73,12 +69,9 @@ FilterReport FittedFilter::coast(double dt_s) {
 // until now told nothing of the outlines.
 void FittedFilter::begin_noise(const CoverageEvidence& evidence) {
   CoverageLikelihood::Scratch scratch(*fine_);
-  std::vector<double> least;
-  for (const GaussianComponent& hypothesis : mixture_.hypotheses()) {
-    const std::vector<double> found = fine_->estimate_noise(evidence, pose_of(hypothesis), scratch);
-    if (least.empty()) least = found;
-    for (size_t c = 0; c < found.size(); ++c) least[c] = std::min(least[c], found[c]);
-  }
+  std::vector<Eigen::VectorXd> poses;
+  for (const GaussianComponent& hypothesis : mixture_.hypotheses()) poses.emplace_back(hypothesis.pose());
+  const std::vector<double> least = fine_->least_noise(evidence, poses, scratch);
   if (noise_.empty()) noise_.assign(least.size(), 0);
   for (size_t c = 0; c < least.size(); ++c) {
     if (noise_[c] == 0) noise_[c] = least[c] > 0 ? least[c] : CoverageLikelihood::kExactNoise;
@@ -89,7 +82,8 @@ void FittedFilter::begin_noise(const CoverageEvidence& evidence) {
 
 void FittedFilter::update_noise(const CoverageEvidence& evidence) {
   CoverageLikelihood::Scratch scratch(*fine_);
-  const std::vector<double> found = fine_->estimate_noise(evidence, pose_of(mixture_.hypotheses().front()), scratch);
+  const Eigen::VectorXd best = mixture_.hypotheses().front().pose();
+  const std::vector<double> found = fine_->estimate_noise(evidence, view(best), scratch);
   for (size_t c = 0; c < noise_.size(); ++c) {
     if (found[c] > 0) noise_[c] *= std::pow(found[c] / noise_[c], 1 / kNoiseMemory);
   }

@@ -48,13 +48,8 @@ PosePrior prior_about(const Skeleton& skeleton, const Eigen::VectorXd& pose) {
 
 // Which of eight directions a pose faces, for a skeleton whose root turns about the vertical; else 0.
 int heading_sector(const Skeleton& skeleton, const Eigen::VectorXd& pose) {
-  for (int d = 0; d < skeleton.num_dofs(); ++d) {
-    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-    if (dof.joint_idx == 0 && dof.is_periodic && dof.axis.y() > 0.5) {
-      return static_cast<int>(std::lround(wrap_angle(pose[d]) / (kPi / 4)) + 8) % 8;
-    }
-  }
-  return 0;
+  const std::optional<int> turn = turning_dof(skeleton);
+  return turn ? static_cast<int>(std::lround(wrap_angle(pose[*turn]) / (kPi / 4)) + 8) % 8 : 0;
 }
 
 // Front and back look alike in a silhouette. Where nothing else tells, a person before a camera faces it: 1 when the
@@ -157,17 +152,10 @@ std::vector<std::vector<Candidate>> by_heading(const Skeleton& skeleton, std::ve
   return groups;
 }
 
-// How good a fit can be tells how much the differences between fits mean: more than exact masks deserve, never less.
-void set_noise(const CoverageLikelihood& likelihood, CoverageEvidence& evidence, std::vector<Candidate>& starts) {
-  CoverageLikelihood::Scratch scratch(likelihood);
-  std::vector<double> least;
-  for (const Candidate& start : starts) {
-    const std::vector<double> noise = likelihood.estimate_noise(evidence, view(start.fit.pose), scratch);
-    if (least.empty()) least = noise;
-    for (size_t c = 0; c < noise.size(); ++c) least[c] = std::min(least[c], noise[c]);
-  }
-  for (double& noise : least) noise = std::max(noise, CoverageLikelihood::kExactNoise);
-  evidence.set_noise(least);
+// What starts cost where outlines are as noisy as this, [C] in units of pixel_unit^3.
+void set_noise(const CoverageLikelihood& likelihood, std::span<const double> noise, CoverageEvidence& evidence,
+               std::vector<Candidate>& starts, CoverageLikelihood::Scratch& scratch) {
+  evidence.set_noise(noise);
   for (Candidate& start : starts) {
     start.fit.energy = likelihood.energy(evidence, Blur::k4, view(start.fit.pose), scratch);
   }
@@ -211,12 +199,11 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   const BodyModel& body = likelihood.body();
   const Skeleton& skeleton = body.skeleton;
   CoverageEvidence evidence = likelihood.prepare(observations);
-  size_t seen = 0;
-  while (seen < observations.size() && evidence.views[seen].trust <= 0) ++seen;
-  check(seen < observations.size(), "initialise: no camera has a say");
-  const PinholeCamera& camera = likelihood.cameras()[seen];
+  const std::optional<size_t> seen = evidence.first_seen();
+  check(seen.has_value(), "initialise: no camera has a say");
+  const PinholeCamera& camera = likelihood.cameras()[*seen];
 
-  const StateBatch placed = place_on_mask(body, camera, observations[seen], candidates);
+  const StateBatch placed = place_on_mask(body, camera, observations[*seen], candidates);
   std::vector<Candidate> starts(static_cast<size_t>(placed.rows()));
   for (size_t k = 0; k < starts.size(); ++k) {
     starts[k] = candidate_at(skeleton, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
@@ -239,9 +226,15 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   }
   fit_all(sight, kFineStages, mirrored);
   std::ranges::move(mirrored, std::back_inserter(starts));
-  sort_best_first(starts);
 
-  set_noise(likelihood, evidence, starts);
+  // How good a fit can be tells how much the differences between fits mean. While poses are sought outlines are taken
+  // for no better than exact masks have them.
+  CoverageLikelihood::Scratch scratch(likelihood);
+  std::vector<Eigen::VectorXd> poses;
+  for (const Candidate& start : starts) poses.push_back(start.fit.pose);
+  std::vector<double> noise = likelihood.least_noise(evidence, poses, scratch);
+  for (double& of_camera : noise) of_camera = std::max(of_camera, CoverageLikelihood::kExactNoise);
+  set_noise(likelihood, noise, evidence, starts, scratch);
   sort_best_first(starts);
   std::vector<std::vector<Candidate>> headings = by_heading(skeleton, std::move(starts));
   starts.clear();
@@ -267,13 +260,8 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
     if (starts.front().fit.cost() > kStaleCost * before) break;
   }
 
-  // How good a fit can be tells how much the differences between fits mean.
-  CoverageLikelihood::Scratch scratch(likelihood);
-  const std::vector<double> noise = likelihood.estimate_noise(evidence, view(starts.front().fit.pose), scratch);
-  evidence.set_noise(noise);
-  for (Candidate& start : starts) {
-    start.fit.energy = likelihood.energy(evidence, Blur::k4, view(start.fit.pose), scratch);
-  }
+  noise = likelihood.estimate_noise(evidence, view(starts.front().fit.pose), scratch);
+  set_noise(likelihood, noise, evidence, starts, scratch);
   const auto log_likelihood = [&](const Candidate& c) {
     return -0.5 * c.fit.cost() + options.facing_bonus * faces_camera(body, camera, view(c.fit.pose));
   };

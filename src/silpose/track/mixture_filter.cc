@@ -128,9 +128,7 @@ std::vector<MixtureFilter::Child> MixtureFilter::jumps_from(const CoverageEviden
                            [&](size_t i) { return fitted[i].log_weight - 0.5 * fitted[i].fit.cost(); });
   order.resize(std::min(order.size(), static_cast<size_t>(options_.num_parents)));
 
-  const auto seen = std::ranges::find_if(evidence.views, [](const auto& view) { return view.trust > 0; });
-  const auto camera = seen == evidence.views.end() ? 0 : static_cast<size_t>(seen - evidence.views.begin());
-  const Eigen::Vector3d eye = fine_->cameras()[camera].centre_in_world();
+  const Eigen::Vector3d eye = fine_->cameras()[evidence.first_seen().value_or(0)].centre_in_world();
   std::vector<Child> jumps;
   for (const size_t p : order) {
     const Child& parent = fitted[p];
