@@ -1,38 +1,18 @@
-// silpose model: body models: which there are, build one, look into one, make one coarser.
+// silpose model: body models: which there are, build one, look into one, make one coarser, fit one to a subject.
 #include <fmt/format.h>
 
 #include <memory>
 
 #include "apps/silpose/body_choice.h"
+#include "apps/silpose/body_facts.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/result_directory.h"
+#include "apps/silpose/model_fit.h"
 #include "silpose/geometry/rigid3.h"
 
 namespace silpose::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-nlohmann::ordered_json facts_of(const BodyModel& body) {
-  nlohmann::ordered_json json;
-  json["name"] = body.name;
-  json["skeleton"] = body.skeleton.name();
-  json["joints"] = body.skeleton.num_joints();
-  json["dofs"] = body.skeleton.num_dofs();
-  json["vertices"] = body.rest.vertices.size();
-  json["faces"] = body.rest.faces.size();
-  json["closed"] = is_closed(body.rest.faces);
-  json["height_m"] = body.height_m;
-  json["weight_kg"] = body.weight_kg;
-  json["facts"] = body.facts;
-  return json;
-}
-
-std::string summary_of(const BodyModel& body) {
-  return fmt::format("{}: {} joints, {} DOF, {} vertices, {} faces, {:.3f} m, {:.1f} kg", body.name,
-                     body.skeleton.num_joints(), body.skeleton.num_dofs(), body.rest.vertices.size(),
-                     body.rest.faces.size(), body.height_m, body.weight_kg);
-}
 
 Result<Outcome> list_models() {
   Outcome outcome;
@@ -75,29 +55,9 @@ Result<Outcome> inspect_model(const std::string& model, Console& console) {
   return outcome;
 }
 
-Result<Outcome> write_model(const BodyModel& body, const std::string& out) {
-  const Result<void> written = write_whole(out, [&](const fs::path& path) { return write_body(path, body); });
-  if (!written) return written.failure();
-  Outcome outcome;
-  outcome.json = facts_of(body);
-  outcome.json["out"] = out;
-  outcome.text = fmt::format("{}\nwritten to {}", summary_of(body), out);
-  return outcome;
-}
-
-CLI::Option* add_body_file_option(CLI::App& command, std::string& out) {
-  return command.add_option("--out", out, "The .body file to write")
-      ->required()
-      ->check(CLI::Validator(
-          [](const std::string& path) {
-            return fs::path(path).extension() == ".body" ? "" : path + ": does not end in .body";
-          },
-          "FILE.body"));
-}
-
 }  // namespace
 
-std::vector<Command> add_model(CLI::App& program, CommonOptions&) {
+std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
   struct Options {
     std::string model = "human", out;
     bool if_older = false;
@@ -143,6 +103,7 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions&) {
          if (!body) return body.failure();
          return write_model(level_of_detail(**body, options->vertices), options->out);
        }},
+      add_model_fit(*model, common),
   };
 }
 

@@ -134,6 +134,15 @@ void add_input_options(CLI::App& command, InputOptions& options) {
   command.add_option("--end", options.end_s, "Seconds to end at, included")->check(within(0, 1e6));
 }
 
+Result<CameraChoice> choose_cameras_of(const InputOptions& input, const CameraOptions& camera) {
+  const Result<Video> video = open_video(input.videos, input.video_options());
+  if (!video) return video.failure();
+  std::vector<PictureSize> sizes;
+  sizes.reserve(static_cast<size_t>(video->num_cameras()));
+  for (int c = 0; c < video->num_cameras(); ++c) sizes.push_back({video->width(c), video->height(c)});
+  return choose_cameras(camera, sizes);
+}
+
 Result<ObservationSource> ObservationSource::open(const InputOptions& options, Console& console) {
   if (options.videos.empty()) throw UsageError("VIDEO is missing");
   if (options.start_s && options.end_s && *options.end_s < *options.start_s) {

@@ -32,6 +32,9 @@ struct InputOptions {
 
 void add_input_options(CLI::App& command, InputOptions& options);
 
+// Cameras for the videos, before any background is learned. Errors: those of open_video() and choose_cameras().
+Result<CameraChoice> choose_cameras_of(const InputOptions& input, const CameraOptions& camera);
+
 // Everything of one instant.
 struct Instant {
   Frame frame;

@@ -14,16 +14,6 @@
 namespace silpose::app {
 namespace {
 
-// Cameras for the videos, before any background is learned.
-Result<CameraChoice> choose_cameras_of(const TrackOptions& options) {
-  const Result<Video> video = open_video(options.input.videos, options.input.video_options());
-  if (!video) return video.failure();
-  std::vector<PictureSize> sizes;
-  sizes.reserve(static_cast<size_t>(video->num_cameras()));
-  for (int c = 0; c < video->num_cameras(); ++c) sizes.push_back({video->width(c), video->height(c)});
-  return choose_cameras(options.camera, sizes);
-}
-
 Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, const CommonOptions& common,
                               Console& console) {
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
@@ -33,7 +23,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   const auto pose =
       read_initial_pose(options, (*body)->skeleton, 0);  // what is wrong with it is told before the clip is read
   if (!pose) return pose.failure();
-  const Result<CameraChoice> cameras = choose_cameras_of(options);
+  const Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
   if (!cameras) return cameras.failure();
   TrackerOptions tracker = tracker_options(options, *body, cameras->cameras, common.seed);
   Result<ObservationSource> source = ObservationSource::open(options.input, console);

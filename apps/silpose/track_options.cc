@@ -26,7 +26,8 @@ void add_fitted_options(CLI::App& app, TrackOptions& options) {
       ->group(kFitted);
   app.add_flag_function(
          "--fit-body,!--no-fit-body", [&options](int64_t count) { options.fit_body = count > 0; },
-         "Fit the subject's bone lengths first; needs several cameras and --smooth (accurate with several cameras: on)")
+         "Fit the body to the subject first: bones and girths with several cameras, the size with one and its floor; needs "
+         "--camera and --smooth (accurate with several cameras: on)")
       ->group(kFitted);
   app.add_flag_function(
          "--floor,!--no-floor", [&tracker](int64_t count) { tracker.floor = count > 0; },
@@ -118,8 +119,8 @@ void check_together(const TrackOptions& options) {
   if (options.fit_body.value_or(false)) {
     if (options.each) throw UsageError("--fit-body: needs several cameras; with --each every clip has one");
     if (!*tracker.resolved().smooth) throw UsageError("--fit-body: needs --smooth");
-    if (options.input.videos.size() < 2) {
-      throw UsageError("--fit-body: one camera cannot tell the length of a bone from its depth; needs several");
+    if (options.camera.file.empty()) {
+      throw UsageError("--fit-body: needs --camera; without a known floor one camera tells nothing of a body's size");
     }
   }
   for (const std::string& video : options.input.videos) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apps/silpose/run_facts.h"
+#include "apps/silpose/subject_fit.h"
 #include "silpose/report/report_page.h"
 
 namespace silpose::app {
@@ -17,14 +18,6 @@ nlohmann::ordered_json figure(double mean, double std) {
 
 double frames_per_second(const Tracked& tracked) { return static_cast<double>(tracked.num_frames) / tracked.loop_s; }
 
-// How much longer the subject's bones are than the body's, and how sure that is: {"right_shin_length": {mean, std},
-// ...}
-nlohmann::ordered_json fitted_lengths(const BodyFit& fit) {
-  nlohmann::ordered_json lengths = nlohmann::ordered_json::object();
-  for (size_t s = 0; s < fit.names.size(); ++s) lengths[fit.names[s]] = figure(fit.lengths[s], fit.deviations[s]);
-  return lengths;
-}
-
 }  // namespace
 
 Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder) {
@@ -36,7 +29,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run = run_facts(told.common);
   run["model"] = told.options.model;
   run["body"] = told.writer.body().name;
-  if (tracked.body_fit && !tracked.recording.steps.empty()) run["fitted_lengths_m"] = fitted_lengths(*tracked.body_fit);
+  if (tracked.body_fit && !tracked.recording.steps.empty()) run["fitted"] = facts_of(*tracked.body_fit);
   run["frames"] = tracked.num_frames;
   run["frames_tracked"] = summary.frames_tracked;
   run["frames_coasted"] = summary.frames_coasted;

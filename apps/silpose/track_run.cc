@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/silpose/subject_fit.h"
 #include "sadb/store/memory_store.h"
 #include "silpose/base/clock.h"
 #include "silpose/exchange/mot.h"
@@ -133,23 +134,12 @@ class TrackRun {
     return draw(reports);
   }
 
-  // From here on the body has the subject's bone lengths, as the clip tracked online tells them. False: interrupted.
+  // From here on the body is the subject's, as far as the clip tells it. False: interrupted.
   bool fit_body_to(std::span<const ClipInstant> clip) {
-    std::vector<std::vector<double>> poses;
-    for (const StepReport& report : track_clip(options_of_pass(tracker_options_), clip, [&](size_t done, size_t total) {
-           return console_.update("tracking the body as given", static_cast<int64_t>(done),
-                                  static_cast<int64_t>(total));
-         })) {
-      poses.push_back(report.pose);
-    }
-    if (Console::interrupted()) return false;
-    const auto total = static_cast<int64_t>(clip.size());
-    std::optional<BodyFit> fit =
-        fit_body(tracker_options_.body, tracker_options_.cameras, clip, poses, {.floor = *tracked_.used.floor},
-                 [&] { return console_.update("fitting the body", total, total); });
+    std::optional<BodyFit> fit = fit_subject(tracker_options_, clip, console_);
     if (Console::interrupted()) return false;
     if (!fit) {
-      tracked_.warnings.emplace_back("the body is as given: there is no frame in which two cameras see the subject");
+      tracked_.warnings.push_back("the body is as given: " + why_not_fitted(tracker_options_.cameras.size()));
       return true;
     }
     tracker_options_.body = fit->body;

@@ -24,7 +24,13 @@ expect_failure 2 'floor.*layers' "${fitted[@]}" --floor --layers 2
 expect_failure 2 'smooth.*camera:0 is live' track camera:0 --out result --smooth
 expect_failure 2 'fit-body.*layers' "${fitted[@]}" --fit-body --layers 2
 expect_failure 2 'fit-body.*smooth' "${fitted[@]}" --fit-body
-expect_failure 2 'fit-body.*one camera' "${fitted[@]}" --fit-body --smooth
+expect_failure 2 'fit-body.*camera' "${fitted[@]}" --fit-body --smooth
+fit=(model fit truth/masks --segmenter masks --quiet)
+expect_failure 2 'camera.*missing' "${fit[@]}" --out subject.body
+expect_failure 2 'VIDEO' model fit --camera truth/camera.toml --out subject.body
+expect_failure 2 'subject.txt: does not end in .body' "${fit[@]}" --camera truth/camera.toml --out subject.txt
+expect_failure 1 'no folder.*nowhere' "${fit[@]}" --camera truth/camera.toml --out nowhere/subject.body
+expect_failure 1 'no_such.toml' "${fit[@]}" --camera no_such.toml --out subject.body
 expect_failure 2 'smooth.*camera:0 is live' track camera:0 --out result --preset accurate
 expect_failure 2 'vertices' "${fitted[@]}" --vertices 7
 for option in '--motion diffusion' '--sigma-deg 3' '--resampling comb' '--resample-below 0.5' '--regenerate 0.1' \

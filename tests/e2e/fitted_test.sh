@@ -51,7 +51,7 @@ pair=(track pair/masks_30 pair/masks_120 --segmenter masks --camera pair/camera.
 "$silpose" "${pair[@]}" --out pair_fitted >fitted.json || fail "--fit-body: exit $?"
 "$silpose" "${pair[@]}" --no-fit-body --out pair_given >given.json || fail "--no-fit-body: exit $?"
 [[ -s pair_fitted/fitted.body && ! -e pair_given/fitted.body ]] || fail "fitted.body is not where it should be"
-expect_at_least "$(number fitted.json fitted_lengths_m right_shin_length mean)" 0.01 "longer shin, metres"
+expect_at_least "$(number fitted.json fitted lengths_m right_shin_length mean)" 0.01 "longer shin, metres"
 grep -q -x 'fit-body = true' pair_fitted/config.toml || fail "config.toml does not say that the body was fitted"
 grep -q -x 'fit-body = false' pair_given/config.toml || fail "config.toml does not say that the body was not fitted"
 grep -q 'floor = true' pair_fitted/config.toml || fail "config.toml does not say that there is a floor"
@@ -64,6 +64,17 @@ done
 "$silpose" evaluate --result pair_given --truth pair --json --quiet >given_errors.json
 expect_at_most "$(number fitted_errors.json joint_error_mm mean)" "$(number given_errors.json joint_error_mm mean)" \
   "joint error with the fitted body, mm"
+
+# The subject's own body: by two cameras, and her size by one that knows its floor.
+"$silpose" model fit pair/masks_30 pair/masks_120 --segmenter masks --camera pair/camera.toml --camera-name 30 \
+  --camera-name 120 --model human:height=1.65 --out subject.body --quiet --json >subject.json || fail "model fit: exit $?"
+expect_at_least "$(number subject.json fitted lengths_m right_shin_length mean)" 0.01 "longer shin, metres"
+"$silpose" model inspect subject.body --quiet >/dev/null || fail "the fitted body cannot be read"
+"$silpose" synth --out tall --model human:height=1.8 --motion static --frames 3 --size 320x240 --quiet
+"$silpose" model fit tall/masks --segmenter masks --camera tall/camera.toml --model human:height=1.65 --out tall.body \
+  --quiet --json >tall.json || fail "model fit with one camera: exit $?"
+expect_at_least "$(number tall.json height_m)" 1.73 "height by the floor, metres"
+expect_at_most "$(number tall.json height_m)" 1.87 "height by the floor, metres"
 
 # Stopped while it smooths: the masks are whole and can be tracked later.
 "$silpose" synth --out long --motion sway --frames 60 --size 160x120 --quiet

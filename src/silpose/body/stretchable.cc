@@ -78,6 +78,21 @@ BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths) {
   return out;
 }
 
+BodyModel scaled(const BodyModel& body, double factor) {
+  check(factor > 0, "scaled: by a factor of {}", factor);
+  BodyModel out = body;
+  std::vector<Joint> joints(body.skeleton.joints().begin(), body.skeleton.joints().end());
+  for (Joint& joint : joints) joint.offset_in_parent *= factor;
+  out.skeleton =
+      Skeleton(body.skeleton.name(), std::move(joints), {body.skeleton.dofs().begin(), body.skeleton.dofs().end()});
+  for (Eigen::Vector3f& x : out.rest.vertices) x *= static_cast<float>(factor);
+  for (Rigid3& joint_from_rest : out.joint_from_rest) joint_from_rest.translation *= factor;
+  for (BodyModel::EndPoint& end : out.end_points) end.offset_in_joint *= factor;
+  out.height_m *= factor;
+  out.weight_kg *= factor * factor * factor;
+  return out;
+}
+
 std::vector<int> shape_dofs(const Skeleton& skeleton) {
   return find_dofs(skeleton, [](const Dof& dof) { return dof.is_shape; });
 }

@@ -23,6 +23,10 @@ Eigen::MatrixXd stretch_covariance(const Skeleton& skeleton);
 // it. Errors: throws std::invalid_argument for another number of lengths, or a bone that would vanish.
 BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths);
 
+// The body larger by `factor` in all directions, its mass by the cube. Errors: throws std::invalid_argument unless
+// positive.
+BodyModel scaled(const BodyModel& body, double factor);
+
 // Indices of the shape DOF.
 std::vector<int> shape_dofs(const Skeleton& skeleton);
 

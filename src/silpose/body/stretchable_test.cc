@@ -99,5 +99,17 @@ TEST(StretchCovariance, IsPositiveAndTiesRightToLeft) {
   EXPECT_LT(correlation(r, a), 0.5);
 }
 
+TEST(Scaled, EveryPointIsFurtherFromTheRootByTheFactor) {
+  const BodyModel larger = scaled(human(), 1.1);
+  std::vector<double> pose(human().skeleton.dofs().size(), 0.0);
+  pose[6] = 0.3, pose[20] = 0.5;
+  const auto before = skin_vertices(human(), pose), after = skin_vertices(larger, pose);
+  for (size_t v = 0; v < before.size(); v += 97) EXPECT_LT((after[v] - 1.1f * before[v]).norm(), 1e-5);
+  const auto joints = landmark_positions(human(), pose), larger_joints = landmark_positions(larger, pose);
+  for (size_t l = 0; l < joints.size(); ++l) EXPECT_LT((larger_joints[l] - 1.1 * joints[l]).norm(), 1e-9);
+  EXPECT_NEAR(larger.height_m, 1.1 * human().height_m, 1e-9);
+  EXPECT_THROW((void)scaled(human(), 0), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace silpose

@@ -9,8 +9,10 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/body/girth.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/girth_fit.h"
 #include "silpose/track/levenberg.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/plausibility.h"
@@ -23,7 +25,9 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr FitStage kStages[] = {{Blur::k8, 6}, {Blur::k4, 6}};
-constexpr int kRounds = 2;  // how good a fit can be tells how much the silhouettes are worth: the first round finds out
+// How good a fit can be tells how much the silhouettes are worth, and where joints are, how thick the flesh is: each
+// round starts from what the one before found out.
+constexpr int kRounds = 3;
 constexpr SmallestGain kSmallestGain{.relative = 1e-3};
 constexpr int kVertices = 3000;        // of the mesh that is compared
 constexpr double kRestWeight = 0.2;    // plausibility.h
@@ -33,6 +37,16 @@ constexpr double kMaxRotation = 0.35;  // radians a step
 struct Unknowns {
   VectorXd lengths;
   std::vector<VectorXd> poses;
+
+  // [T][D + S] poses of the stretchable body.
+  [[nodiscard]] std::vector<VectorXd> stretched_poses() const {
+    std::vector<VectorXd> out;
+    for (const VectorXd& pose : poses) {
+      out.emplace_back(pose.size() + lengths.size());
+      out.back() << pose, lengths;
+    }
+    return out;
+  }
 };
 
 // The problem at some unknowns: a block for lengths, one for each pose, and what ties both.
@@ -53,11 +67,10 @@ struct Point {
 
 class Problem {
  public:
-  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
-          std::vector<CoverageEvidence> evidence)
+  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility, std::span<CoverageEvidence> evidence)
       : likelihood_(likelihood),
         plausibility_(plausibility),
-        evidence_(std::move(evidence)),
+        evidence_(evidence),
         information_(stretch_covariance(likelihood.body().skeleton).inverse()) {
     const std::vector<int> shape = shape_dofs(likelihood.body().skeleton);
     lower_.resize(std::ssize(shape)), upper_.resize(std::ssize(shape));
@@ -71,10 +84,9 @@ class Problem {
   void estimate_noise(const Unknowns& at) {
     std::vector<std::vector<double>> found(likelihood_.cameras().size());
     CoverageLikelihood::Scratch scratch(likelihood_);
-    for (size_t t = 0; t < at.poses.size(); ++t) {
-      VectorXd pose(at.poses[t].size() + at.lengths.size());
-      pose << at.poses[t], at.lengths;
-      const std::vector<double> noise = likelihood_.estimate_noise(evidence_[t], view(pose), scratch);
+    const std::vector<VectorXd> poses = at.stretched_poses();
+    for (size_t t = 0; t < poses.size(); ++t) {
+      const std::vector<double> noise = likelihood_.estimate_noise(evidence_[t], view(poses[t]), scratch);
       for (size_t c = 0; c < noise.size(); ++c) {
         if (noise[c] > 0) found[c].push_back(noise[c]);
       }
@@ -95,15 +107,14 @@ class Problem {
     Linearised out;
     out.gradient.resize(T), out.hessian.resize(T), out.mixed.resize(T);
     std::vector<double> costs(T);
+    const std::vector<VectorXd> poses = at.stretched_poses();
     std::vector<VectorXd> length_gradients(T);
     std::vector<MatrixXd> length_hessians(T);
     parallel_for(T, 1, [&](size_t begin, size_t end) {
       CoverageLikelihood::Scratch scratch(likelihood_);
       for (size_t t = begin; t < end; ++t) {
-        VectorXd pose(D + S);
-        pose << at.poses[t], at.lengths;
-        NormalEquations equations = likelihood_.linearise(evidence_[t], blur, view(pose), scratch);
-        costs[t] = equations.energy + plausibility_.add(pose, kRestWeight, equations.gradient, equations.hessian);
+        NormalEquations equations = likelihood_.linearise(evidence_[t], blur, view(poses[t]), scratch);
+        costs[t] = equations.energy + plausibility_.add(poses[t], kRestWeight, equations.gradient, equations.hessian);
         out.gradient[t] = equations.gradient.head(D);
         out.hessian[t] = equations.hessian.topLeftCorner(D, D);
         out.hessian[t].diagonal().array() += 1e-6;
@@ -160,10 +171,22 @@ class Problem {
  private:
   const CoverageLikelihood& likelihood_;
   const Plausibility& plausibility_;
-  std::vector<CoverageEvidence> evidence_;  // [T]
-  MatrixXd information_;                    // [S, S] of the lengths' prior
-  VectorXd lower_, upper_;                  // [S] limits of the lengths
+  std::span<CoverageEvidence> evidence_;  // [T]
+  MatrixXd information_;                  // [S, S] of the lengths' prior
+  VectorXd lower_, upper_;                // [S] limits of the lengths
 };
+
+std::optional<BodyFit> fit_size_of(const BodyModel& body, const PinholeCamera& camera,
+                                   std::span<const std::vector<double>> poses) {
+  BodyFit fit;
+  fit.size = fit_size(body, camera, poses);
+  if (!fit.size) return std::nullopt;
+  BodyModel fitted = scaled(body, fit.size->factor);
+  fitted.name += ",fitted";
+  fitted.facts["fitted_size"] = fmt::format("{:.4f}", fit.size->factor);
+  fit.body = std::make_shared<const BodyModel>(std::move(fitted));
+  return fit;
+}
 
 }  // namespace
 
@@ -178,23 +201,33 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
           "fit_body: a pose of {} numbers for {} DOF", poses[t].size(), body->skeleton.dofs().size());
     if (!poses[t].empty() && std::ranges::count_if(clip[t].observations, has_a_say) >= 2) usable.push_back(t);
   }
+  if (cameras.size() == 1) {
+    return options.floor ? fit_size_of(*body, cameras.front(), poses) : std::nullopt;
+  }
   if (usable.empty()) return std::nullopt;
 
-  const auto stretched = std::make_shared<const BodyModel>(stretchable(level_of_detail(*body, kVertices)));
-  const CoverageLikelihood likelihood(stretched, cameras);
-  const std::vector<int> shape = shape_dofs(stretched->skeleton);
+  const BodyModel bare = stretchable(level_of_detail(*body, kVertices));
+  const std::vector<int> shape = shape_dofs(bare.skeleton);
+  const std::vector<std::string> girth_groups = girth_names(bare);
   const auto S = std::ssize(shape);
   Point at{{VectorXd::Zero(S), {}}, {}};
-  std::vector<CoverageEvidence> evidence;
+  GirthFit girths{VectorXd::Zero(std::ssize(girth_groups)), {}};
+  std::vector<size_t> chosen;
   const size_t count = std::min(options.num_instants, usable.size());
   for (size_t i = 0; i < count; ++i) {
-    const size_t t = usable[(2 * i + 1) * usable.size() / (2 * count)];
-    at.unknowns.poses.emplace_back(Eigen::Map<const VectorXd>(poses[t].data(), std::ssize(poses[t])));
-    evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k4));
+    chosen.push_back(usable[(2 * i + 1) * usable.size() / (2 * count)]);
+    const std::vector<double>& pose = poses[chosen.back()];
+    at.unknowns.poses.emplace_back(Eigen::Map<const VectorXd>(pose.data(), std::ssize(pose)));
   }
-  const Plausibility plausibility(stretched, options.floor);
-  Problem problem(likelihood, plausibility, std::move(evidence));
+  std::vector<CoverageEvidence> evidence;
   for (int round = 0; round < kRounds; ++round) {
+    const auto stretched = std::make_shared<const BodyModel>(with_girths(bare, view(girths.girths)));
+    const CoverageLikelihood likelihood(stretched, cameras);
+    if (evidence.empty()) {
+      for (const size_t t : chosen) evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k4));
+    }
+    const Plausibility plausibility(stretched, options.floor);
+    Problem problem(likelihood, plausibility, evidence);
     problem.estimate_noise(at.unknowns);
     for (const FitStage& stage : kStages) {
       at.equations = problem.linearise(at.unknowns, stage.blur);
@@ -205,16 +238,26 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
         return next;
       });
     }
+    if (round + 1 < kRounds) {
+      girths = fit_girths(bare, cameras, evidence, at.unknowns.stretched_poses(), girths.girths, proceed);
+    }
   }
   BodyFit fit;
   fit.lengths.assign(at.unknowns.lengths.begin(), at.unknowns.lengths.end());
   const MatrixXd covariance = Problem::reduce(at.equations, 0).hessian.inverse();
   for (Eigen::Index s = 0; s < S; ++s) fit.deviations.push_back(std::sqrt(std::max(covariance(s, s), 0.0)));
-  for (const int d : shape) fit.names.push_back(stretched->skeleton.dofs()[static_cast<size_t>(d)].name);
-  BodyModel fitted = with_lengths(*body, fit.lengths);
+  for (const int d : shape) fit.names.push_back(bare.skeleton.dofs()[static_cast<size_t>(d)].name);
+  for (size_t g = 0; g < girth_groups.size(); ++g) {
+    const auto idx = static_cast<Eigen::Index>(g);
+    fit.girths.push_back({girth_groups[g], girths.girths[idx], girths.deviations[idx]});
+  }
+  BodyModel fitted = with_lengths(with_girths(*body, view(girths.girths)), fit.lengths);
   fitted.name += ",fitted";
   for (size_t s = 0; s < fit.names.size(); ++s) {
     fitted.facts[fit.names[s]] = fmt::format("{:+.4f} m", fit.lengths[s]);
+  }
+  for (const BodyFit::Girth& girth : fit.girths) {
+    fitted.facts[girth.name + "_girth"] = fmt::format("{:+.1f} %", 100 * girth.share);
   }
   fit.body = std::make_shared<const BodyModel>(std::move(fitted));
   return fit;

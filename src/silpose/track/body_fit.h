@@ -1,8 +1,8 @@
-// fit_body(): how long the subject's bones are, from a tracked clip: lengths that all instants share and each instant's
-// pose are fitted together to the silhouettes. Two cameras or more tell lengths from depth; one does not, unless the
-// subject turns.
-// Based on: bundle adjustment, whose poses are eliminated by the Schur complement (references.bib: triggs2000).
-// Threads: a function without state; uses all cores and gives the same result on any number.
+// fit_body(): how long the subject's bones are and how thick the flesh around them, from a tracked clip: lengths that
+// all instants share and each instant's pose are fitted together to the silhouettes, in turn with girths. Two cameras
+// or more tell lengths from depth; one does not. Based on: bundle adjustment, whose poses are eliminated by the Schur
+// complement (references.bib: triggs2000). Threads: a function without state; uses all cores and gives the same result
+// on any number.
 #pragma once
 
 #include <functional>
@@ -14,6 +14,7 @@
 
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
+#include "silpose/track/size_fit.h"
 #include "silpose/track/track_clip.h"
 
 namespace silpose {
@@ -28,11 +29,19 @@ struct BodyFit {
   std::vector<std::string> names;         // [S] "right_shin_length"
   std::vector<double> lengths;            // [S] metres longer than `body` had them, body/stretchable.h
   std::vector<double> deviations;         // [S] of what is not known of them
+  struct Girth {
+    std::string name;                 // "thigh", both of them
+    double share = 0, deviation = 0;  // thicker than `body` had it, body/girth.h
+  };
+  std::vector<Girth> girths;    // [G]
+  std::optional<SizeFit> size;  // of one camera's subject, of whom nothing else can be told
 };
 
-// `poses` [T][D] are those of the clip's instants; an empty one leaves its instant out, and so does a subject whom
-// fewer than two cameras see. Nothing where no instant is left. Lengths stay within three deviations. Errors: throws
-// std::invalid_argument where poses do not fit the clip or the body.
+// `poses` [T][D] are those of the clip's instants; an empty one leaves its instant out, and so does, with several
+// cameras, a subject whom fewer than two of them see. Lengths stay within three deviations. With one camera the size is
+// all that is fitted, by the floor; poses are then those of a tracker that knows of no floor (size_fit.h). Nothing
+// where no instant is left, and with one camera that knows no floor. Errors: throws std::invalid_argument where poses
+// do not fit the clip or the body.
 std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector<PinholeCamera>& cameras,
                                 std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
                                 const BodyFitOptions& options = {}, const std::function<bool()>& proceed = {});

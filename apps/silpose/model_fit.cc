@@ -1,0 +1,89 @@
+#include "apps/silpose/model_fit.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/silpose/body_choice.h"
+#include "apps/silpose/body_facts.h"
+#include "apps/silpose/observation_source.h"
+#include "apps/silpose/subject_fit.h"
+
+namespace silpose::app {
+namespace {
+
+struct FitOptions {
+  InputOptions input;
+  CameraOptions camera;
+  std::string model = "human", out;
+};
+
+Result<std::vector<ClipInstant>> read_clip_of(ObservationSource& source, Console& console) {
+  std::vector<ClipInstant> clip;
+  while (console.update("segmenting", std::ssize(clip), source.num_expected())) {
+    Result<std::optional<Instant>> instant = source.next();
+    if (!instant) return instant.failure();
+    if (!instant->has_value()) break;
+    clip.push_back({(*instant)->frame.index, (*instant)->frame.time_ns, std::move((*instant)->observations)});
+  }
+  return clip;
+}
+
+Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, Console& console) {
+  if (options.input.videos.empty()) throw UsageError("VIDEO is missing");
+  if (options.camera.file.empty()) {
+    throw UsageError("--camera is missing: a body is fitted with cameras that are known, one with its floor");
+  }
+  const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
+  if (!std::filesystem::is_directory(folder))
+    return error("--out {}: there is no folder {}", options.out, folder.string());
+  const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
+  if (!body) return body.failure();
+  const Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
+  if (!cameras) return cameras.failure();
+  Result<ObservationSource> source = ObservationSource::open(options.input, console);
+  if (!source) return source.failure();
+  const Result<std::vector<ClipInstant>> clip = read_clip_of(*source, console);
+  if (!clip) return clip.failure();
+  if (Console::interrupted()) return error("interrupted: nothing is written");
+  if (clip->empty()) return error("{}: no frame between --start and --end", source->video().name());
+
+  TrackerOptions tracker;
+  tracker.body = *body;
+  tracker.cameras = cameras->cameras;
+  tracker.preset = "accurate";
+  tracker.seed = common.seed;
+  const std::optional<BodyFit> fit = fit_subject(tracker, *clip, console);
+  if (Console::interrupted()) return error("interrupted: nothing is written");
+  if (!fit) return error("{}: no body fitted: {}", source->video().name(), why_not_fitted(cameras->cameras.size()));
+
+  std::vector<std::string> warnings = cameras->warnings;
+  const std::vector<std::string> of_input = source->warnings();
+  warnings.insert(warnings.end(), of_input.begin(), of_input.end());
+  if (fit->size) {
+    warnings.emplace_back(
+        "one camera tells the size of a subject on the floor, and neither proportions nor girths; two or more do");
+  }
+  for (const std::string& warning : warnings) console.warning(warning);
+  Result<Outcome> outcome = write_model(*fit->body, options.out);
+  if (!outcome) return outcome.failure();
+  outcome->json["fitted"] = facts_of(*fit);
+  outcome->json["warnings"] = warnings;
+  outcome->text = summary_of(*fit) + "\n" + outcome->text;
+  return outcome;
+}
+
+}  // namespace
+
+Command add_model_fit(CLI::App& model, const CommonOptions& common) {
+  const auto options = std::make_shared<FitOptions>();
+  CLI::App* const fit = model.add_subcommand(
+      "fit", "A subject's own body: bones and girths by several cameras, the size by one whose floor is known");
+  add_input_options(*fit, options->input);
+  add_camera_options(*fit, options->camera);
+  add_model_option(*fit, options->model);
+  add_body_file_option(*fit, options->out);
+  return {fit, [options, &common](Console& console) { return run_fit(*options, common, console); }};
+}
+
+}  // namespace silpose::app

@@ -1,0 +1,55 @@
+#include "apps/silpose/subject_fit.h"
+
+#include <fmt/format.h>
+
+namespace silpose::app {
+namespace {
+
+nlohmann::ordered_json figure(double mean, double std) { return {{"mean", mean}, {"std", std}}; }
+
+}  // namespace
+
+std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<const ClipInstant> clip, Console& console) {
+  const bool floor = *tracker.resolved().floor;
+  TrackerOptions pass = options_of_pass(tracker);
+  if (tracker.cameras.size() == 1) pass.floor = false;
+  std::vector<std::vector<double>> poses;
+  for (const StepReport& report : track_clip(pass, clip, [&](size_t done, size_t total) {
+         return console.update("tracking the body as given", static_cast<int64_t>(done), static_cast<int64_t>(total));
+       })) {
+    poses.push_back(report.pose);
+  }
+  if (Console::interrupted()) return std::nullopt;
+  const auto total = static_cast<int64_t>(clip.size());
+  std::optional<BodyFit> fit = fit_body(tracker.body, tracker.cameras, clip, poses, {.floor = floor},
+                                        [&] { return console.update("fitting the body", total, total); });
+  return Console::interrupted() ? std::nullopt : std::move(fit);
+}
+
+std::string why_not_fitted(size_t num_cameras) {
+  return num_cameras > 1 ? "there is no frame in which two cameras see the subject"
+                         : "the subject does not stand on the floor y = 0 of the camera file";
+}
+
+nlohmann::ordered_json facts_of(const BodyFit& fit) {
+  nlohmann::ordered_json facts;
+  if (fit.size) {
+    facts["size"] = figure(fit.size->factor, fit.size->deviation);
+    return facts;
+  }
+  for (size_t s = 0; s < fit.names.size(); ++s) {
+    facts["lengths_m"][fit.names[s]] = figure(fit.lengths[s], fit.deviations[s]);
+  }
+  for (const BodyFit::Girth& girth : fit.girths) facts["girths"][girth.name] = figure(girth.share, girth.deviation);
+  return facts;
+}
+
+std::string summary_of(const BodyFit& fit) {
+  const std::string what =
+      fit.size ? fmt::format("size by the floor, {:+.1f} % (deviation over frames {:.1f} %)",
+                             100 * (fit.size->factor - 1), 100 * fit.size->deviation)
+               : fmt::format("lengths of {} bones and {} girths", fit.lengths.size(), fit.girths.size());
+  return fmt::format("{}: {:.3f} m, {:.1f} kg", what, fit.body->height_m, fit.body->weight_kg);
+}
+
+}  // namespace silpose::app

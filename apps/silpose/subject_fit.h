@@ -1,0 +1,28 @@
+// Fitting the tracker's body to the subject of a clip, for `track --fit-body` and `model fit`.
+// Threads: the main thread only.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "apps/silpose/console.h"
+#include "silpose/track/body_fit.h"
+#include "silpose/track/tracker_options.h"
+
+namespace silpose::app {
+
+// Tracks the clip online with the body as given, and fits that: bones and girths with several cameras, the size with
+// one, by the floor. Nothing where the clip does not tell (why_not_fitted), or when interrupted.
+std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<const ClipInstant> clip, Console& console);
+
+std::string why_not_fitted(size_t num_cameras);
+
+// {"lengths_m": {"right_shin_length": {mean, std}, ...}, "girths": {...}, "size": {...}}: what was fitted of these.
+nlohmann::ordered_json facts_of(const BodyFit& fit);
+
+// One line for people: "12 bones, girths of 12 groups of bones fitted: 1.770 m, 71.2 kg".
+std::string summary_of(const BodyFit& fit);
+
+}  // namespace silpose::app
