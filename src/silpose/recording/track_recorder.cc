@@ -40,6 +40,18 @@ Result<std::map<int64_t, T>> read_path(const sadb::Blackboard& board, const std:
   return values;
 }
 
+// The trust of every camera, by name.
+Result<std::map<std::string, std::map<int64_t, double>>> read_trust(const sadb::Blackboard& board,
+                                                                    const std::string& folder) {
+  std::map<std::string, std::map<int64_t, double>> trust;
+  for (const sadb::PathInfo& info : board.list(folder)) {
+    auto values = read_path<double>(board, info.path);
+    if (!values) return values.failure();
+    trust[info.path.substr(folder.size() + 1)] = std::move(*values);
+  }
+  return trust;
+}
+
 template <class T>
 T take(std::map<int64_t, T>& values, int64_t time_ns) {
   const auto found = values.find(time_ns);
@@ -94,6 +106,7 @@ Result<TrackRecording> read_recording(const sadb::Blackboard& board, const std::
   auto modes = read_path<sadb::Pose>(board, path("mode"));
   auto spreads = read_path<std::vector<double>>(board, path("spread"));
   auto landmark_spreads = read_path<std::vector<double>>(board, path("landmark_spread"));
+  const auto trust = read_trust(board, path("trust"));
   if (!frames) return frames.failure();
   if (!states) return states.failure();
   if (!accuracies) return accuracies.failure();
@@ -102,9 +115,11 @@ Result<TrackRecording> read_recording(const sadb::Blackboard& board, const std::
   if (!modes) return modes.failure();
   if (!spreads) return spreads.failure();
   if (!landmark_spreads) return landmark_spreads.failure();
+  if (!trust) return trust.failure();
   if (frames->empty()) return error("{}: nothing is recorded there", prefix);
 
   TrackRecording recording;
+  for (const auto& [camera, values] : *trust) recording.cameras.push_back(camera);
   for (const auto& [time_ns, frame] : *frames) {
     RecordedStep step;
     step.frame_idx = std::llround(frame);
@@ -127,6 +142,10 @@ Result<TrackRecording> read_recording(const sadb::Blackboard& board, const std::
     }
     step.visual_accuracy = take(*accuracies, time_ns);
     step.effective_sample_size = take(*sizes, time_ns);
+    for (const auto& [camera, values] : *trust) {
+      const auto found = values.find(time_ns);
+      step.trust.push_back(found == values.end() ? std::numeric_limits<double>::quiet_NaN() : found->second);
+    }
     recording.steps.push_back(std::move(step));
   }
   return recording;

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "sadb/store/memory_store.h"
 
 namespace silpose {
@@ -51,6 +53,10 @@ TEST(TrackRecorder, WhatGoesInComesBack) {
   EXPECT_EQ(step.landmark_spread[1], Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(step.visual_accuracy, 0.9);
   EXPECT_EQ(step.effective_sample_size, 77);
+  EXPECT_EQ(recording.cameras, std::vector<std::string>{"front"});
+  EXPECT_EQ(step.trust, std::vector<double>{0.5});
+  ASSERT_EQ(recording.steps[0].trust.size(), 1u);
+  EXPECT_TRUE(std::isnan(recording.steps[0].trust[0]));
 }
 
 TEST(TrackRecorder, MasksAndTrustAreEntriesOfTheirCamera) {

@@ -24,11 +24,13 @@ struct RecordedStep {
   std::vector<double> pose, mode, spread;        // [D] metres, radians; empty while waiting
   std::vector<Eigen::Vector3d> landmark_spread;  // [J + E] metres; empty while waiting
   double visual_accuracy = 0, effective_sample_size = 0;
+  std::vector<double> trust;  // [C] how far each camera's mask could be relied on, 0 to 1; NaN where nothing is told
 };
 
 struct TrackRecording {
-  std::string skeleton;             // its name
-  std::vector<RecordedStep> steps;  // [T] in time order
+  std::string skeleton;              // its name
+  std::vector<RecordedStep> steps;   // [T] in time order
+  std::vector<std::string> cameras;  // [C] by name, of those that tell of their trust
 };
 
 // "waiting", "initialised", "tracked", "coasted".
