@@ -59,6 +59,10 @@ Result<ByteImage> read_image(const std::filesystem::path& path, int channels) {
   return image;
 }
 
+cv::Mat view_of(const ByteImage& image) {
+  return {image.height(), image.width(), CV_8UC(image.channels()), const_cast<uint8_t*>(image.pixels().data())};
+}
+
 Result<void> encode(const std::filesystem::path& path, const cv::Mat& picture) {
   std::vector<uint8_t> encoded;
   try {
@@ -88,8 +92,15 @@ Result<Mask> read_mask(const std::filesystem::path& path) {
 Result<void> write_image(const std::filesystem::path& path, const ByteImage& image) {
   check(!image.empty() && (image.channels() == 1 || image.channels() == 3), "write_image: {}x{}x{}", image.width(),
         image.height(), image.channels());
-  return encode(path, cv::Mat(image.height(), image.width(), CV_8UC(image.channels()),
-                              const_cast<uint8_t*>(image.pixels().data())));
+  return encode(path, view_of(image));
+}
+
+std::string jpeg_bytes(const ByteImage& image, int quality) {
+  check(!image.empty() && (image.channels() == 1 || image.channels() == 3) && quality >= 1 && quality <= 100,
+        "jpeg_bytes: {}x{}x{}, quality {}", image.width(), image.height(), image.channels(), quality);
+  std::vector<uint8_t> encoded;
+  cv::imencode(".jpg", view_of(image), encoded, {cv::IMWRITE_JPEG_QUALITY, quality});
+  return {encoded.begin(), encoded.end()};
 }
 
 Result<DepthImage> read_depth_image(const std::filesystem::path& path) {

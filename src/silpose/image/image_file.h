@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
@@ -25,5 +26,8 @@ Result<void> write_depth_image(const std::filesystem::path& path, const DepthIma
 // 1 or 3 channels; the format is told by the extension. Errors: not writable.
 Result<void> write_image(const std::filesystem::path& path, const ByteImage& image);
 Result<void> write_mask(const std::filesystem::path& path, const Mask& mask);
+
+// The bytes of a JPEG file. REQUIRES: 1 or 3 channels, not empty. `quality` 1 to 100.
+std::string jpeg_bytes(const ByteImage& image, int quality);
 
 }  // namespace silpose

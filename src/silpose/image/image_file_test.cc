@@ -95,5 +95,16 @@ TEST_F(ImageFileTest, SaysWhenItCannotWrite) {
   EXPECT_THROW((void)write_image(folder_ / "a.png", ByteImage(4, 4, 2)), std::invalid_argument);
 }
 
+TEST_F(ImageFileTest, JpegBytesAreAFile) {
+  const ByteImage flat(40, 30, 3, 120);
+  const std::string bytes = jpeg_bytes(flat, 80);
+  std::ofstream(folder_ / "flat.jpg", std::ios::binary) << bytes;
+  const ByteImage back = read_colour_image(folder_ / "flat.jpg").value();
+  ASSERT_EQ(back.width(), 40);
+  EXPECT_NEAR(back.at(20, 15, 1), 120, 2);
+  EXPECT_LT(jpeg_bytes(gradient(64, 64, 3), 20).size(), jpeg_bytes(gradient(64, 64, 3), 95).size());
+  EXPECT_THROW((void)jpeg_bytes(ByteImage(), 80), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace silpose
