@@ -18,6 +18,51 @@ nlohmann::ordered_json figure(double mean, double std) {
 
 double frames_per_second(const Tracked& tracked) { return static_cast<double>(tracked.num_frames) / tracked.loop_s; }
 
+// What others read, where it was written.
+constexpr std::pair<const char*, const char*> kDownloads[] = {
+    {"poses.csv", "angles and root position of every frame"}, {"joints.csv", "joint positions, pixels and spread"},
+    {"spread.csv", "standard deviation of every angle"},      {"motion.bvh", "the motion, for Blender and others"},
+    {"markers.trc", "joints as markers, for OpenSim"},        {"motion.mot", "coordinates, for OpenSim"},
+    {"motion.glb", "the body and its motion as glTF"},        {"overlay.mp4", "the video"}};
+
+std::string line_of(const PinholeCamera& camera) {
+  const Eigen::Vector3d centre = camera.centre_in_world();
+  return fmt::format("{}: {}x{} pixels, focal length {:.0f}, at ({:.2f}, {:.2f}, {:.2f}) m", camera.name, camera.width,
+                     camera.height, camera.fx, centre.x(), centre.y(), centre.z());
+}
+
+FactLines run_lines(const TrackTold& told) {
+  FactLines lines = {{"Command", told.common.command_line},
+                     {"Version", SILPOSE_VERSION},
+                     {"Machine", machine_name()},
+                     {"Body", told.writer.body().name},
+                     {"Camera file", told.options.camera.file.empty() ? "none: assumed" : told.options.camera.file}};
+  for (const PinholeCamera& camera : told.writer.cameras()) lines.emplace_back("Camera", line_of(camera));
+  lines.emplace_back("Preset", told.options.tracker.preset);
+  for (const auto& [name, value] : chosen_options(told.options, told.tracked.used)) lines.emplace_back(name, value);
+  lines.emplace_back("Seed", std::to_string(told.common.seed));
+  lines.emplace_back("Frames a second", fmt::format("{:.2f}", frames_per_second(told.tracked)));
+  return lines;
+}
+
+// How the masks were made: what cut them out, and the options that were given to it.
+FactLines mask_lines(const InputOptions& options, const ObservationSource& source) {
+  FactLines lines = {{"Segmenter", source.background()}};
+  const auto add = [&](const char* name, const std::vector<std::string>& values) {
+    if (!values.empty()) lines.emplace_back(name, fmt::format("{}", fmt::join(values, ", ")));
+  };
+  add("Background", options.backgrounds);
+  add("Masks", options.masks);
+  if (options.segmenter == "chroma") lines.emplace_back("Key colour", options.key_colour);
+  add("Depth", options.depths);
+  if (!options.depth_range.empty()) lines.emplace_back("Depth range", options.depth_range);
+  add("Region", options.regions);
+  add("Garbage mask", options.garbage_masks);
+  if (options.grow_px != 0) lines.emplace_back("Grown by", fmt::format("{} px", options.grow_px));
+  if (options.min_blob_px) lines.emplace_back("Least blob", fmt::format("{} px", *options.min_blob_px));
+  return lines;
+}
+
 }  // namespace
 
 Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder) {
@@ -62,27 +107,26 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
 }
 
 Result<void> write_track_report(const TrackTold& told, const std::filesystem::path& folder) {
+  const std::vector<PinholeCamera>& cameras = told.writer.cameras();
   ReportInput report;
   report.title = std::filesystem::path(told.source.video().name()).filename().string();
   if (report.title.empty()) report.title = told.source.video().name();
   report.recording = &told.tracked.recording;
-  report.skeleton = &told.writer.body().skeleton;
+  report.body = &told.writer.body();
+  report.viewpoint = cameras[0].centre_in_world();
   // Not there where drawing it was interrupted before its first picture.
   if (std::filesystem::exists(folder / "overlay.mp4")) report.overlay_video = folder / "overlay.mp4";
   report.fps = told.source.video().fps();
   report.stages_s = told.tracked.seconds.list();
   report.warnings = told.warnings;
-  report.facts = {{"Command", told.common.command_line},
-                  {"Version", SILPOSE_VERSION},
-                  {"Machine", machine_name()},
-                  {"Body", told.writer.body().name},
-                  {"Silhouettes from", told.source.background()},
-                  {"Camera", told.options.camera.file.empty() ? "assumed" : told.options.camera.file},
-                  {"preset", told.options.tracker.preset}};
-  for (const auto& [name, value] : chosen_options(told.options, told.tracked.used))
-    report.facts.emplace_back(name, value);
-  report.facts.emplace_back("Seed", std::to_string(told.common.seed));
-  report.facts.emplace_back("Frames a second", fmt::format("{:.2f}", frames_per_second(told.tracked)));
+  report.facts = run_lines(told);
+  report.mask_facts = mask_lines(told.options.input, told.source);
+  for (size_t c = 0; c < cameras.size(); ++c) {
+    report.strips.emplace_back(cameras[c].name, told.writer.strips()[c].examples());
+  }
+  for (const auto& [file, text] : kDownloads) {
+    if (std::filesystem::exists(folder / file)) report.downloads.emplace_back(file, text);
+  }
   return write_report(folder / "report.html", report);
 }
 

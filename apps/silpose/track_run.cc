@@ -77,7 +77,7 @@ class TrackRun {
     tracked_.seconds.decode += now.decode_s;
     tracked_.seconds.segment += now.segment_s;
     const Stopwatch writing;
-    const Result<void> written = writer_.add_masks(now.frame.index, now.observations);
+    const Result<void> written = writer_.add_masks(now.frame, now.observations);
     tracked_.seconds.write += writing.seconds();
     if (!written) return written.failure();
     return instant;

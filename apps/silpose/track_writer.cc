@@ -16,15 +16,20 @@ namespace silpose::app {
 
 TrackWriter::TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
                          std::vector<PinholeCamera> cameras, double fps)
-    : directory_(std::move(directory)), body_(std::move(body)), cameras_(std::move(cameras)), fps_(fps) {}
+    : directory_(std::move(directory)),
+      body_(std::move(body)),
+      cameras_(std::move(cameras)),
+      fps_(fps),
+      strips_(cameras_.size()) {}
 
-Result<void> TrackWriter::add_masks(int64_t frame_idx, std::span<const Observation> observations) {
+Result<void> TrackWriter::add_masks(const Frame& frame, std::span<const Observation> observations) {
   for (size_t c = 0; c < cameras_.size(); ++c) {
     const auto folder = directory_ / (cameras_.size() == 1 ? "masks" : "masks_" + cameras_[c].name);
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
-    const Result<void> written = write_mask(folder / fmt::format("{:06}.png", frame_idx), observations[c].mask);
+    const Result<void> written = write_mask(folder / fmt::format("{:06}.png", frame.index), observations[c].mask);
     if (!written) return written.failure();
+    strips_[c].add(frame.index, static_cast<double>(frame.time_ns) * 1e-9, frame.images[c], observations[c].mask);
   }
   return {};
 }

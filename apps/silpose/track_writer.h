@@ -14,6 +14,7 @@
 #include "silpose/geometry/camera.h"
 #include "silpose/image/video.h"
 #include "silpose/recording/track_recorder.h"
+#include "silpose/report/mask_strip.h"
 #include "silpose/shape/observation.h"
 
 namespace silpose::app {
@@ -26,8 +27,9 @@ class TrackWriter {
   TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
               std::vector<PinholeCamera> cameras, double fps);
 
-  // One frame of masks/ (masks_NAME/ with several cameras). Shapes: one observation a camera.
-  Result<void> add_masks(int64_t frame_idx, std::span<const Observation> observations);
+  // One frame of masks/ (masks_NAME/ with several cameras), and of the examples that strips() has. Shapes: one
+  // observation a camera.
+  Result<void> add_masks(const Frame& frame, std::span<const Observation> observations);
 
   // The next picture of overlay.mp4, of the first camera, with `pose` [D] drawn on it; empty: nothing is.
   Result<void> add_picture(ByteImage picture, std::span<const double> pose);
@@ -41,6 +43,8 @@ class TrackWriter {
 
   [[nodiscard]] const std::vector<PinholeCamera>& cameras() const { return cameras_; }
   [[nodiscard]] const BodyModel& body() const { return *body_; }
+  // Of each camera, examples of its masks.
+  [[nodiscard]] const std::vector<MaskStrip>& strips() const { return strips_; }
 
  private:
   std::filesystem::path directory_;
@@ -48,6 +52,7 @@ class TrackWriter {
   std::vector<PinholeCamera> cameras_;
   double fps_;
   bool is_fitted_ = false;
+  std::vector<MaskStrip> strips_;  // [C]
   std::optional<VideoWriter> overlay_;
 };
 

@@ -1,5 +1,6 @@
-// The page that make_report fills: markup, style and the script that draws the curves. Three places are filled in:
-// @TITLE@, @VIDEO@ (the source of the video element) and @DATA@ (JSON).
+// The page that make_report fills: page/page.html with its style and scripts inside, made into C++ by page/embed.cmake.
+// Four places are left to be filled in: @TITLE@ and @HEADING@ (the page's title), @VIDEO@ (the source of the video
+// element) and @DATA@ (report_data.h).
 #pragma once
 
 #include <string_view>

@@ -1,0 +1,39 @@
+// MaskStrip: a few small pictures of a clip with the mask's outline on them, evenly over the clip however long it is.
+// Pictures are cut out around the mask: what matters is whether its edge, hands and feet are right.
+// Threads: one thread per strip.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "silpose/image/image.h"
+#include "silpose/image/mask.h"
+
+namespace silpose {
+
+struct MaskExample {
+  int64_t frame_idx = 0;
+  double time_s = 0;
+  int width = 0, height = 0;  // pixels
+  bool is_empty = false;      // nothing was found; the picture is whole
+  std::string jpeg;           // the bytes of the file
+};
+
+class MaskStrip {
+ public:
+  static constexpr size_t kMost = 8;        // examples
+  static constexpr int kLongestSide = 240;  // pixels of an example
+
+  // The next picture of the clip, B, G, R, and its mask. REQUIRES: equal sizes.
+  void add(int64_t frame_idx, double time_s, const ByteImage& picture, const Mask& mask);
+
+  // At most kMost, the first picture among them; all where there were no more.
+  [[nodiscard]] std::vector<MaskExample> examples() const;
+
+ private:
+  std::vector<MaskExample> kept_;  // every stride_-th picture, less than 4 kMost of them
+  int64_t num_seen_ = 0, stride_ = 1;
+};
+
+}  // namespace silpose
