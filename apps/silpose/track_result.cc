@@ -109,8 +109,10 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
 Result<void> write_track_report(const TrackTold& told, const std::filesystem::path& folder) {
   const std::vector<PinholeCamera>& cameras = told.writer.cameras();
   ReportInput report;
-  report.title = std::filesystem::path(told.source.video().name()).filename().string();
-  if (report.title.empty()) report.title = told.source.video().name();
+  for (const std::string& video : told.options.input.videos) {
+    const std::string name = std::filesystem::path(video).filename().string();
+    report.title += (report.title.empty() ? "" : ", ") + (name.empty() ? video : name);
+  }
   report.recording = &told.tracked.recording;
   report.body = &told.writer.body();
   report.viewpoint = cameras[0].centre_in_world();

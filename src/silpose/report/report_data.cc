@@ -80,7 +80,7 @@ Json dofs_of(const TrackRecording& recording, const Skeleton& skeleton) {
          {"limits", has_limits ? Json{rounded(dof.lower * scale), rounded(dof.upper * scale)} : Json(nullptr)},
          {"values", series(steps.size(), step,
                            [&](size_t i) { return steps[i].pose.empty() ? kUnknown : steps[i].pose[d] * scale; })},
-         {"half", series(steps.size(), step, [&](size_t i) {
+         {"half", series(steps.size(), step * kStepOfIntervals, [&](size_t i) {
             return steps[i].spread.empty() ? kUnknown : steps[i].spread[d] * scale * kSpreadsOf90Percent;
           })}});
   }

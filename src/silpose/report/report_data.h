@@ -12,7 +12,8 @@ namespace silpose {
 
 // Steps of the series.
 inline constexpr double kAngleStepDeg = 0.01;
-inline constexpr double kLengthStepM = 0.0001;   // translations and what is claimed of them
+inline constexpr double kLengthStepM = 0.0001;   // translations
+inline constexpr double kStepOfIntervals = 10;   // of claimed intervals, over that of their angle or length
 inline constexpr double kPositionStepM = 0.001;  // of joints, for the eye
 
 // One object: fps, facts, mask_facts, strips, downloads, warnings, stages, and for the T steps: state (a letter each:

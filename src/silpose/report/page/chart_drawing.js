@@ -1,8 +1,8 @@
-// How a chart is drawn. However long the clip, a curve has at most two points a pixel: of the steps that fall on one, the
-// least and the greatest, so that no peak is lost.
+// How a chart is drawn. However long the clip, a curve has at most two points a pixel: of the steps that fall on one,
+// the least and the greatest, so that no peak is lost.
 
-// Points of a curve in the time shown, in order: {x, low, high, below, above} with the values' extremes and those of the
-// band, cut where `isIn(step)` does not hold: a list of runs.
+// Points of a curve in the time shown, in order: {x, low, high, below, above} with the values' extremes and those of
+// the band, cut where `isIn(step)` does not hold: a list of runs.
 function runsOf({values, half}, x, width, isIn) {
   const runs = [];
   const perPixel = (shown[1] - shown[0] + 1) / Math.max(1, width) > 2;
@@ -27,7 +27,8 @@ function runsOf({values, half}, x, width, isIn) {
 
 function drawAxes(g, chart, x, y, {left, right, top, bottom}) {
   const [low, high] = chart.range;
-  const vertical = ticks(low, high, 5), span = ticks(startTime(), endTime(), Math.max(2, Math.floor((right - left) / 80)));
+  const vertical = ticks(low, high, 5);
+  const span = ticks(startTime(), endTime(), Math.max(2, Math.floor((right - left) / 80)));
   g.font = "11px system-ui, sans-serif";
   g.lineWidth = 1;
   g.strokeStyle = colour("--grid");

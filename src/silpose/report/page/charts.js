@@ -1,5 +1,5 @@
-// Curves over time. options: title, unit, places, series: [{name, side, values, half, everywhere: also
-// where there is no evidence}], limits, range, least (span of the vertical axis). What is drawn stays; the cursor is a line of its own above it.
+// Curves over time. options: title, unit, places, series: [{name, side, values, half, everywhere: also where there is
+// no evidence}], limits, range, least (span of the vertical axis). What is drawn stays; the cursor is a line above it.
 
 const charts = [];                     // those on the page
 const plotLeft = 44, plotRight = 8;    // room for the vertical axis, and at the right end

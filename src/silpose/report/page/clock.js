@@ -1,5 +1,5 @@
-// One time cursor for the video, the skeleton and the curves: a step of the recording. The video goes without controls of
-// its own, which would lie over the feet. Where there is no video, a clock of our own plays.
+// One time cursor for the video, the skeleton and the curves: a step of the recording. The video goes without controls
+// of its own, which would lie over the feet. Where there is no video, a clock of our own plays.
 
 const video = byId("video");
 let hasVideo = Boolean(video.getAttribute("src"));
@@ -12,10 +12,10 @@ const stateNames = {w: "waiting", i: "start", t: "tracked", c: "predicted"};
 
 function moved() {
   slider.value = cursor;
-  const text = `frame ${digits(frames[cursor], 0)}, ${seconds(times[cursor])}, ${stateNames[data.state[cursor]] || "-"}`;
-  slider.setAttribute("aria-valuetext", text);
+  const frame = `frame ${digits(frames[cursor], 0)}, ${stateNames[data.state[cursor]] || "-"}`;
+  slider.setAttribute("aria-valuetext", `${seconds(times[cursor])}, ${frame}`);
   now.replaceChildren(seconds(times[cursor]));
-  element("small", now, ` frame ${digits(frames[cursor], 0)}, ${stateNames[data.state[cursor]] || "-"}`);
+  element("small", now, ` ${frame}`);
   for (const follower of followers) follower(cursor);
 }
 
@@ -72,6 +72,7 @@ function withoutVideo(note) {
   ownStart = null;
   showPlaying(false);
   byId("video-note").textContent = note;
+  byId("clip").classList.add("alone");
 }
 if (!hasVideo) withoutVideo("There is no overlay video of this result.");
 video.addEventListener("error", () => {

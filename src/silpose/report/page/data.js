@@ -35,17 +35,18 @@ const colour = name => style.getPropertyValue(name).trim();
 const sideColour = side => colour(side === "left" ? "--left" : side === "right" ? "--right" : "--middle");
 const withoutSide = name => name.replace(/^(left|right)_/, "");
 
-const known = values => Array.from(values).filter(Number.isFinite);
+const known = values => values.filter(Number.isFinite);
 const mean = values => values.length ? values.reduce((a, b) => a + b, 0) / values.length : NaN;
 const deviation = values => { const m = mean(values); return Math.sqrt(mean(values.map(v => (v - m) ** 2))); };
 const largest = values => values.reduce((a, b) => Math.max(a, b), -Infinity);
 const smallest = values => values.reduce((a, b) => Math.min(a, b), Infinity);
 // The value below which a share of the values lies.
 function quantile(values, share) {
-  const sorted = known(values).sort((a, b) => a - b);
+  const sorted = Float64Array.from(known(values)).sort();
   return sorted.length ? sorted[Math.round(share * (sorted.length - 1))] : NaN;
 }
 const digits = (value, places) => Number.isFinite(value) ? value.toFixed(places) : "-";
+const halfText = half => Number.isFinite(half) ? `\u00b1${half.toFixed(1)}\u00b0` : "-";
 const seconds = time => digits(time, 2) + " s";
 
 // Round tick positions: 1, 2 or 5 times a power of ten, at most `most` of them.

@@ -1,5 +1,5 @@
-# cmake -DFOLDER=... -DOUT=... "-DSCRIPTS=a.js b.js" -P embed.cmake: writes C++ that holds page.html with page.css and the
-# scripts, in their order, inside.
+# cmake -DFOLDER=... -DOUT=... "-DSCRIPTS=a.js b.js" -P embed.cmake: writes C++ that holds page.html with page.css and
+# the scripts, in their order, inside.
 file(READ ${FOLDER}/page.html page)
 file(READ ${FOLDER}/page.css style)
 set(script "")

@@ -8,7 +8,9 @@ function doubtfulPlaces() {
   const places = [];
   const frames = ([first, last]) => last === first ? "1 frame" : `${last - first + 1} frames`;
   const add = (stretch, text) => places.push({first: stretch[0], last: stretch[1], text});
-  for (const stretch of stretches(i => data.state[i] === "w")) add(stretch, `no pose: nobody found yet, ${frames(stretch)}`);
+  for (const stretch of stretches(i => data.state[i] === "w")) {
+    add(stretch, `no pose: the subject is not found yet, ${frames(stretch)}`);
+  }
   for (const stretch of stretches(i => data.state[i] === "c")) {
     add(stretch, `no evidence: the pose is predicted, ${frames(stretch)}`);
   }
@@ -33,11 +35,11 @@ function writeTiles() {
   const waiting = count - evidence.length - predicted;
   const seen = known(accuracy);
   const tiles = [[count, "frames"], [evidence.length, "tracked"], [predicted, "coasted: no evidence"],
-                 ...(waiting ? [[waiting, "waiting for a person"]] : []),
+                 ...(waiting ? [[waiting, "waiting for the subject"]] : []),
                  [seen.length ? `${digits(mean(seen), 3)} \u00b1 ${digits(deviation(seen), 3)}` : "-",
                   "visual accuracy: agreement of silhouettes (IoU)"]];
   const halves = mapJoints.map(joint => joint.median).filter(Number.isFinite);
-  if (halves.length) tiles.push([`\u00b1${digits(quantile(halves, 0.5), 1)}\u00b0`, "claimed 90 % interval of a joint, median"]);
+  if (halves.length) tiles.push([halfText(quantile(halves, 0.5)), "claimed 90 % interval of a joint, median"]);
   for (const [value, label] of tiles) {
     const tile = element("div", byId("tiles"), undefined, "tile");
     element("b", tile, value);
@@ -53,13 +55,17 @@ function writeVerdict(places) {
   } else {
     const worst = evidence.reduce((a, b) => accuracy[b] < accuracy[a] ? b : a);
     sentences.push(`${evidence.length} of ${count} frames were compared with a silhouette; the agreement is ` +
-        `${digits(typicalAccuracy, 2)} in the median and ${digits(accuracy[worst], 2)} at worst (${seconds(times[worst])}).`);
+        `${digits(typicalAccuracy, 2)} in the median and ${digits(accuracy[worst], 2)} at worst ` +
+        `(${seconds(times[worst])}).`);
     if (byUncertainty.length > 1) {
-      sentences.push(`Least certain: ${byUncertainty.slice(0, 3).map(joint => `${joint.name} (\u00b1${digits(joint.median, 1)}\u00b0)`).join(", ")}; ` +
-          `most certain: ${byUncertainty.slice(-2).map(joint => `${joint.name} (\u00b1${digits(joint.median, 1)}\u00b0)`).join(", ")}.`);
+      const list = joints => joints.map(joint => `${joint.name} (${halfText(joint.median)})`).join(", ");
+      sentences.push(`Least certain: ${list(byUncertainty.slice(0, 3))}; ` +
+          `most certain: ${list(byUncertainty.slice(-2))}.`);
     }
   }
-  if (places.length) sentences.push(`${places.length} ${places.length === 1 ? "place is" : "places are"} listed below to look at.`);
+  if (places.length) {
+    sentences.push(`${places.length} ${places.length === 1 ? "place is" : "places are"} listed below to look at.`);
+  }
   byId("verdict").textContent = sentences.join(" ");
 }
 
@@ -73,9 +79,10 @@ function writePlaces(places) {
     const button = element("button", element("li", list), `${time}: ${text}`);
     button.addEventListener("click", () => seek(first));
   }
-  if (places.length > most) element("li", list, `and ${places.length - most} shorter ones`, "plain soft");
+  if (places.length > most) element("li", list, `and ${places.length - most} more, no longer than these`, "plain soft");
   if (!places.length && evidence.length) {
-    element("li", list, `Nowhere does the agreement fall ${accuracyDrop} below its median, and no frame is without evidence.`, "plain");
+    element("li", list, `Nowhere does the agreement fall ${accuracyDrop} below its median, and no frame is without ` +
+        "evidence.", "plain");
   }
   const stuck = dofs.filter(dof => dof.atLimit > 0.1).sort((a, b) => b.atLimit - a.atLimit).slice(0, 6);
   if (stuck.length) {

@@ -1,13 +1,15 @@
-// The rest of the page: charts of the track's quality, the joints' curves by group, the masks, tables; and what sets all off.
+// The rest of the page: charts of the track's quality, the joints' curves by group, the masks, tables; and what sets
+// all off.
 
 function writeQuality() {
   const parent = byId("quality");
-  addChart(parent, {title: "Visual accuracy (IoU)", series: [{values: accuracy, everywhere: true}], range: [0, 1], places: 3});
+  addChart(parent, {title: "Visual accuracy (IoU)", range: [0, 1], places: 3,
+                    series: [{values: accuracy, everywhere: true}]});
   // Of one hypothesis, and of a smoothed clip, the size is 1 throughout and tells nothing.
   const most = largest(known(sampleSize));
   if (most > 1) {
-    addChart(parent, {title: "Effective sample size", series: [{values: sampleSize, everywhere: true}], range: [0, most * 1.05],
-                      places: most < 100 ? 1 : 0});
+    addChart(parent, {title: "Effective sample size", range: [0, most * 1.05], places: most < 100 ? 1 : 0,
+                      series: [{values: sampleSize, everywhere: true}]});
   }
   trusts.forEach(({camera, values}) => addChart(byId("trust"), {
     title: trusts.length > 1 ? `Trust in the masks of ${camera}` : "Trust in the masks", range: [0, 1.02], places: 2,
@@ -47,13 +49,15 @@ function writeGroups() {
   }
   byId("groups").hidden = groups.length < 2;
   byId("sides-label").hidden = !["left", "right"].every(side => dofs.some(dof => dof.side === side));
+  document.body.classList.toggle("sideless", !data.skeleton.names.some(name => withoutSide(name) !== name));
   byId("sides").addEventListener("change", () => showGroup(chosenGroup));
   whenJointChosen = showGroup;
 }
 
 function writeNumbers() {
   const table = byId("numbers"), head = element("tr", element("thead", table)), body = element("tbody", table);
-  for (const title of ["angle", "least", "greatest", "range", "claimed 90 %, median", "95th percentile", "at its limit"]) {
+  const titles = ["angle", "least", "greatest", "range", "claimed 90 %, median", "95th percentile", "at its limit"];
+  for (const title of titles) {
     element("th", head, title, title === "angle" ? "" : "number").scope = "col";
   }
   for (const dof of dofs) {
@@ -65,7 +69,8 @@ function writeNumbers() {
       byId("curves-title").scrollIntoView();
     });
     const low = smallest(known(values)), high = largest(known(values)), unit = dof.isAngle ? "\u00b0" : " m";
-    const cell = (value, sign = "") => element("td", row, Number.isFinite(value) ? sign + digits(value, dof.places) + unit : "-", "number");
+    const cell = (value, sign = "") =>
+        element("td", row, Number.isFinite(value) ? sign + digits(value, dof.places) + unit : "-", "number");
     cell(low);
     cell(high);
     cell(high - low);
@@ -93,15 +98,16 @@ function writeMasks() {
     for (const {frame, time, width, height, empty, picture} of examples) {
       const button = element("button", strip);
       const image = element("img", button);
-      Object.assign(image, {src: picture, width, height,
-                            alt: `The picture at ${seconds(time)}${empty ? ", in which nothing was found" : " with the outline of its mask"}`});
+      const found = empty ? ", in which nothing was found" : " with the outline of its mask";
+      Object.assign(image, {src: picture, width, height, alt: `The picture at ${seconds(time)}${found}`});
       element("span", button, `${seconds(time)}${empty ? ": nothing found" : ""}`);
       button.title = `frame ${frame}`;
       button.addEventListener("click", () => seek(stepAt(time)));
     }
   }
   if (data.strips.some(({examples}) => examples.length)) {
-    element("p", byId("strips"), "The input, cut out around the mask, with the mask's outline, evenly over the clip.", "soft");
+    element("p", byId("strips"), "The input, cut out around the mask, with the mask's outline, evenly over the clip.",
+            "soft");
   }
   byId("masks").hidden = !data.mask_facts.length && !data.strips.length && !trusts.length;
 }
@@ -116,6 +122,7 @@ function writeStages() {
     element("td", row, seconds(time), "number");
     element("td", row, count ? `${digits(1000 * time / count, 1)} ms a frame` : "", "number");
   }
+  if (!spent.length) return;
   const row = element("tr", body);
   element("th", row, "together").scope = "row";
   element("td", row);

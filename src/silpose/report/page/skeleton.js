@@ -20,7 +20,8 @@ const isKnown = points => points.length > 0 && Number.isFinite(points[0][0]);
 
 // The box around a pose: its middle, and half its diagonal.
 function boundsOf(points) {
-  const low = [0, 1, 2].map(k => smallest(points.map(p => p[k]))), high = [0, 1, 2].map(k => largest(points.map(p => p[k])));
+  const low = [0, 1, 2].map(k => smallest(points.map(p => p[k])));
+  const high = [0, 1, 2].map(k => largest(points.map(p => p[k])));
   return {middle: [0, 1, 2].map(k => (low[k] + high[k]) / 2),
           radius: Math.hypot(...[0, 1, 2].map(k => high[k] - low[k])) / 2};
 }
@@ -159,10 +160,11 @@ function look(yaw, pitch) {
 
 measureBody();
 Object.assign(view, fromCamera);
-skeletonCanvas.setAttribute("aria-label", `The body's ${data.skeleton.names.length} joints and ends in 3D at the time of ` +
-    "the cursor. Arrow keys turn it, plus and minus bring it nearer and further.");
+skeletonCanvas.setAttribute("aria-label", `The body's ${data.skeleton.names.length} joints and ends in 3D at the ` +
+    "time of the cursor. Arrow keys turn it, plus and minus bring it nearer and further.");
 byId("cell").textContent = `${cell} m`;
-for (const [name, yaw, pitch] of [["Camera", 0, null], ["Turned 90\u00b0", Math.PI / 2, null], ["From above", 0, 1.5]]) {
+const views = [["Camera", 0, null], ["Turned 90\u00b0", Math.PI / 2, null], ["From above", 0, 1.5]];
+for (const [name, yaw, pitch] of views) {
   element("button", byId("views"), name).addEventListener("click", () =>
       look(fromCamera.yaw + yaw, pitch === null ? fromCamera.pitch : pitch));
 }

@@ -24,11 +24,13 @@ function drawMap() {
   const canvas = prepare(mapCanvas);
   if (!canvas || !count) return;
   const {g, width, height} = canvas, left = Math.round(mapLeft()), right = width - mapValues;
-  const columns = Math.max(1, Math.floor(right - left)), first = times[0], last = Math.max(times[count - 1], first + 1e-3);
+  const columns = Math.max(1, Math.floor(right - left));
+  const first = times[0], last = Math.max(times[count - 1], first + 1e-3);
   const x = i => left + (right - left) * (times[i] - first) / (last - first);
   // The first and last column of a step, which reaches half way to its neighbours.
   const column = at => Math.min(columns - 1, Math.max(0, Math.floor(at - left)));
-  const columnsOf = i => [column((x(Math.max(0, i - 1)) + x(i)) / 2), column((x(i) + x(Math.min(count - 1, i + 1))) / 2)];
+  const between = (i, j) => column((x(i) + x(j)) / 2);
+  const columnsOf = i => [between(Math.max(0, i - 1), i), between(i, Math.min(count - 1, i + 1))];
   g.font = "12px system-ui, sans-serif";
   g.textBaseline = "middle";
   mapJoints.forEach((joint, row) => {
@@ -38,7 +40,7 @@ function drawMap() {
     g.textAlign = "right";
     g.fillText(joint.name, left - 8, top + mapRowHeight / 2, left - 12);
     g.fillStyle = colour("--soft");
-    g.fillText(`\u00b1${digits(joint.median, 1)}\u00b0`, width - 6, top + mapRowHeight / 2);
+    g.fillText(halfText(joint.median), width - 6, top + mapRowHeight / 2);
     const widest = new Float64Array(columns).fill(NaN);  // of the steps that fall on a column
     for (let i = 0; i < count; ++i) {
       if (!Number.isFinite(joint.half[i])) continue;
@@ -66,7 +68,8 @@ function drawMap() {
   const span = ticks(first, last, Math.max(2, Math.floor((right - left) / 80)));
   for (const time of span.values) {
     g.textAlign = time === first ? "left" : "center";
-    g.fillText(time.toFixed(span.places) + " s", left + (right - left) * (time - first) / (last - first), area.bottom + 4);
+    const at = left + (right - left) * (time - first) / (last - first);
+    g.fillText(time.toFixed(span.places) + " s", at, area.bottom + 4);
   }
 }
 
