@@ -8,12 +8,12 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
+#include "silpose/base/levenberg.h"
 #include "silpose/base/parallel.h"
 #include "silpose/body/girth.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/track/girth_fit.h"
-#include "silpose/track/levenberg.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/plausibility.h"
 #include "silpose/track/pose_fit.h"

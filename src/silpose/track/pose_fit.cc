@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
-#include "silpose/track/levenberg.h"
+#include "silpose/base/levenberg.h"
 
 namespace silpose {
 namespace {

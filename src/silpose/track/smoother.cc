@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
+#include "silpose/base/levenberg.h"
 #include "silpose/base/parallel.h"
 #include "silpose/motion/noise.h"
 #include "silpose/track/footing.h"
-#include "silpose/track/levenberg.h"
 
 namespace silpose {
 namespace {

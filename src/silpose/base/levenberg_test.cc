@@ -1,4 +1,4 @@
-#include "silpose/track/levenberg.h"
+#include "silpose/base/levenberg.h"
 
 #include <gtest/gtest.h>
 
