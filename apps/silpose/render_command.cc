@@ -12,6 +12,7 @@
 #include "apps/silpose/result_directory.h"
 #include "silpose/exchange/tables.h"
 #include "silpose/image/image_file.h"
+#include "silpose/render/draw_floor.h"
 #include "silpose/render/shaded.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/synth/scene.h"
@@ -22,6 +23,7 @@ namespace {
 struct RenderOptions {
   std::string pose, out, kind = "silhouette", model = "human", size = "640x480", view;
   CameraOptions camera;
+  bool draw_floor = false;
 };
 
 // FILE.csv or FILE.csv:ROW; rows count from 0.
@@ -77,6 +79,7 @@ Result<void> write_depth(const std::filesystem::path& path, const Image<float>& 
 
 Result<Outcome> run_render(const RenderOptions& options, Console& console) {
   if (std::filesystem::path(options.out).extension() != ".png") throw UsageError("--out: a .png file is wanted");
+  if (options.draw_floor && options.kind != "shaded") throw UsageError("--draw-floor: needs --kind shaded");
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
   if (!body) return body.failure();
   const Result<std::vector<double>> pose = read_row(options.pose, (*body)->skeleton);
@@ -90,6 +93,11 @@ Result<Outcome> run_render(const RenderOptions& options, Console& console) {
     if (options.kind == "depth") return write_depth(path, draw_depth(*camera, vertices, (*body)->rest.faces));
     ByteImage picture(camera->width, camera->height, 3, uint8_t{225});
     draw_shaded(*camera, vertices, (*body)->rest.faces, clothing_colours(**body), {.shadow = 0.3}, picture);
+    if (options.draw_floor) {
+      const Eigen::Vector3d root = landmark_positions(**body, *pose)[0];
+      draw_floor(picture, *camera, {root.x(), root.z()}, render_silhouette(**body, *camera, *pose));
+      draw_footprints(picture, **body, *camera, *pose);
+    }
     return write_image(path, picture);
   });
   if (!written) return written.failure();
@@ -111,6 +119,7 @@ Command add_render(CLI::App& program, const CommonOptions&) {
       ->check(CLI::IsMember({"silhouette", "depth", "shaded"}));
   app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels, without --camera")->capture_default_str();
   app->add_option("--view", options->view, "front, side, or degrees round the subject, without --camera");
+  app->add_flag("--draw-floor", options->draw_floor, "Of a shaded picture: the floor y = 0 in 1 m squares, footprints");
   add_model_option(*app, options->model);
   add_camera_options(*app, options->camera);
   return {app, [options](Console& console) { return run_render(*options, console); }};

@@ -29,7 +29,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   Result<ObservationSource> source = ObservationSource::open(options.input, console);
   if (!source) return source.failure();
 
-  TrackWriter writer(directory->path(), *body, cameras->cameras, source->video().fps());
+  TrackWriter writer(directory->path(), *body, cameras->cameras, source->video().fps(), options.draw_floor);
   const Result<Tracked> tracked = track_video(options, std::move(tracker), *source, writer, console);
   if (!tracked) return tracked.failure();
 

@@ -95,6 +95,8 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
       ->check(CLI::Range(0, 1'000'000));
   app.add_option("--init", options.init, "First pose: descent, or a poses.csv (its row of the first frame)")
       ->capture_default_str();
+  app.add_flag("--draw-floor", options.draw_floor,
+               "Draw the floor y = 0 (1 m squares) and the footprints into the overlay: do camera and feet fit it?");
   app.add_option("--config", options.config, "Options from a TOML file; the command line wins");
   add_fitted_options(app, options);
   add_sampling_options(app, options);

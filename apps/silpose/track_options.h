@@ -24,7 +24,7 @@ struct TrackOptions {
   std::optional<std::string> metric, estimate;
   std::optional<double> resample_below;
   std::optional<bool> fit_body;
-  bool each = false, resume = false;
+  bool each = false, resume = false, draw_floor = false;
   TrackerOptions tracker;
 };
 

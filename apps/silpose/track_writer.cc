@@ -10,16 +10,19 @@
 #include "silpose/exchange/trc.h"
 #include "silpose/geometry/calibration_file.h"
 #include "silpose/image/image_file.h"
+#include "silpose/render/draw_floor.h"
 #include "silpose/render/draw_overlay.h"
+#include "silpose/render/silhouette.h"
 
 namespace silpose::app {
 
 TrackWriter::TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
-                         std::vector<PinholeCamera> cameras, double fps)
+                         std::vector<PinholeCamera> cameras, double fps, bool draws_floor)
     : directory_(std::move(directory)),
       body_(std::move(body)),
       cameras_(std::move(cameras)),
       fps_(fps),
+      draws_floor_(draws_floor),
       strips_(cameras_.size()) {}
 
 Result<void> TrackWriter::add_masks(const Frame& frame, std::span<const Observation> observations) {
@@ -35,7 +38,18 @@ Result<void> TrackWriter::add_masks(const Frame& frame, std::span<const Observat
 }
 
 Result<void> TrackWriter::add_picture(ByteImage picture, std::span<const double> pose) {
-  if (!pose.empty()) draw_overlay(picture, *body_, cameras_[0], pose);
+  const PinholeCamera& camera = cameras_[0];
+  if (draws_floor_) {
+    Mask subject;
+    if (!pose.empty()) {
+      subject = render_silhouette(*body_, camera, pose);
+      const Eigen::Vector3d root = landmark_positions(*body_, pose)[0];
+      floor_middle_ = {root.x(), root.z()};
+    }
+    draw_floor(picture, camera, floor_middle_, subject);
+  }
+  if (!pose.empty()) draw_overlay(picture, *body_, camera, pose);
+  if (draws_floor_ && !pose.empty()) draw_footprints(picture, *body_, camera, pose);
   if (!overlay_) {
     Result<VideoWriter> created = create_video(directory_ / "overlay.mp4", picture.width(), picture.height(), fps_);
     if (!created) return created.failure();

@@ -25,13 +25,14 @@ inline constexpr const char* kFittedBodyFile = "fitted.body";
 class TrackWriter {
  public:
   TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
-              std::vector<PinholeCamera> cameras, double fps);
+              std::vector<PinholeCamera> cameras, double fps, bool draws_floor);
 
   // One frame of masks/ (masks_NAME/ with several cameras), and of the examples that strips() has. Shapes: one
   // observation a camera.
   Result<void> add_masks(const Frame& frame, std::span<const Observation> observations);
 
-  // The next picture of overlay.mp4, of the first camera, with `pose` [D] drawn on it; empty: nothing is.
+  // The next picture of overlay.mp4, of the first camera, with `pose` [D] drawn on it; empty: nothing is. The
+  // floor round the subject, and its footprints, are drawn too where the writer was asked to.
   Result<void> add_picture(ByteImage picture, std::span<const double> pose);
 
   // What is written is of this body from now on; finish() writes it, too, as kFittedBodyFile.
@@ -51,7 +52,8 @@ class TrackWriter {
   std::shared_ptr<const BodyModel> body_;
   std::vector<PinholeCamera> cameras_;
   double fps_;
-  bool is_fitted_ = false;
+  bool draws_floor_, is_fitted_ = false;
+  Eigen::Vector2d floor_middle_ = Eigen::Vector2d::Zero();  // x, z: below the subject's root, where it was seen last
   std::vector<MaskStrip> strips_;  // [C]
   std::optional<VideoWriter> overlay_;
 };

@@ -1,52 +1,18 @@
 #include "silpose/render/draw_overlay.h"
 
-#include <algorithm>
-#include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <string_view>
 #include <vector>
 
 #include "silpose/base/check.h"
+#include "silpose/render/canvas.h"
 #include "silpose/render/silhouette.h"
 
 namespace silpose {
-namespace {
-
-constexpr int kFractionBits = 4;  // of the coordinates that OpenCV draws with
-
-cv::Mat view_of(ByteImage& picture) {
-  check(picture.channels() == 3, "draw_overlay: picture of {} channels", picture.channels());
-  return {picture.height(), picture.width(), CV_8UC3, picture.pixels().data()};
-}
-
-cv::Scalar scalar_of(Colour colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
-
-// Lines and dots that keep their weight whatever the picture's size.
-int line_width(const ByteImage& picture) {
-  return std::max(1, static_cast<int>(std::lround(picture.height() / 360.0)));
-}
-
-cv::Point fixed_point(const Eigen::Vector2d& pixel) {
-  static constexpr double kFar = 16384;  // what lies further out is not seen anyway, and would overflow
-  const auto fixed = [](double value) {
-    return static_cast<int>(std::lround((std::clamp(value, -kFar, kFar) - 0.5) * (1 << kFractionBits)));
-  };
-  return {fixed(pixel.x()), fixed(pixel.y())};
-}
-
-Colour colour_of(std::string_view landmark) {
-  if (landmark.starts_with("left_")) return {255, 150, 40};
-  if (landmark.starts_with("right_")) return {30, 140, 255};
-  return {245, 245, 245};
-}
-
-}  // namespace
-
 void draw_outline(ByteImage& picture, const Mask& mask, Colour colour) {
   check(mask.width() == picture.width() && mask.height() == picture.height(),
         "draw_outline: mask of {}x{} on a picture of {}x{}", mask.width(), mask.height(), picture.width(),
         picture.height());
-  cv::Mat canvas = view_of(picture);
+  cv::Mat canvas = canvas_of(picture);
   ByteImage bytes = image_from_mask(mask);
   const cv::Mat filled(mask.height(), mask.width(), CV_8UC1, bytes.pixels().data());
   std::vector<std::vector<cv::Point>> contours;
@@ -55,7 +21,7 @@ void draw_outline(ByteImage& picture, const Mask& mask, Colour colour) {
 }
 
 void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {
-  cv::Mat canvas = view_of(picture);
+  cv::Mat canvas = canvas_of(picture);
   const std::vector<std::string> names = landmark_names(body);
   const std::vector<Eigen::Vector3d> positions = landmark_positions(body, pose);
   const auto joints = body.skeleton.joints();

@@ -1,0 +1,28 @@
+// SegmentProjector: straight segments of the world as curves in a camera's picture, the lens' distortion respected.
+// Clipped before they are projected: to what lies before the camera, and to a little more than the picture shows (far
+// outside of it a distortion polynomial folds back, and would put lines where there are none).
+// Source: clipping against half-spaces, Liang and Barsky (references.bib: liang1984).
+// Threads: immutable; const functions are safe.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "silpose/geometry/camera.h"
+
+namespace silpose {
+
+class SegmentProjector {
+ public:
+  explicit SegmentProjector(const PinholeCamera& camera);
+
+  // Pixels along the segment between two world points, in order, evenly spaced before distortion; empty where nothing
+  // of it can be seen. Two without distortion.
+  [[nodiscard]] std::vector<Eigen::Vector2d> operator()(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+ private:
+  PinholeCamera camera_;
+  std::vector<Eigen::Vector4d> half_spaces_;  // of camera coordinates: inside is n . x + d >= 0
+};
+
+}  // namespace silpose
