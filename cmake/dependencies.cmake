@@ -15,7 +15,7 @@ find_path(FLATBUFFERS_INCLUDE_DIR flatbuffers/flatbuffers.h REQUIRED)
 
 # OpenCV's own CMake package comes with Debian's libopencv-dev, which drags in 40 more packages; the modules we use have
 # packages of their own, without it.
-set(SILPOSE_OPENCV_MODULES core imgproc imgcodecs videoio video dnn)
+set(SILPOSE_OPENCV_MODULES core imgproc imgcodecs videoio video dnn calib3d)
 find_package(OpenCV 4.5 QUIET COMPONENTS ${SILPOSE_OPENCV_MODULES})
 if(NOT OpenCV_FOUND)
   find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)

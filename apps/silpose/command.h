@@ -53,6 +53,7 @@ Command add_synth(CLI::App& program, const CommonOptions& common);
 Command add_evaluate(CLI::App& program, const CommonOptions& common);
 Command add_segment(CLI::App& program, const CommonOptions& common);
 Command add_render(CLI::App& program, const CommonOptions& common);
+Command add_calibrate(CLI::App& program, const CommonOptions& common);
 Command add_experiment(CLI::App& program, const CommonOptions& common);
 std::vector<Command> add_model(CLI::App& program, CommonOptions& common);
 

@@ -67,9 +67,10 @@ int run_program(int argc, char** argv) {
   program.set_version_flag("--version", SILPOSE_VERSION);
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
-  std::vector<Command> commands = {add_track(program, common), add_synth(program, common),
-                                   add_evaluate(program, common), add_segment(program, common),
-                                   add_render(program, common), add_experiment(program, common)};
+  std::vector<Command> commands = {add_track(program, common),     add_synth(program, common),
+                                   add_evaluate(program, common),  add_segment(program, common),
+                                   add_render(program, common),    add_calibrate(program, common),
+                                   add_experiment(program, common)};
   for (Command& command : add_model(program, common)) commands.push_back(std::move(command));
   for (Command& command : commands) add_common_options(*command.app, common);
 

@@ -1,0 +1,94 @@
+#include "apps/silpose/board_search.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "silpose/base/parallel.h"
+#include "silpose/image/video.h"
+
+namespace silpose::app {
+namespace {
+
+constexpr int64_t kFramesToSearch = 200;
+constexpr int64_t kStepOfUnknown = 10;  // frames, where the video does not tell how many it has
+constexpr size_t kBatch = 8;            // frames in memory at a time
+
+std::string board_text(const Board& board) {
+  return fmt::format("chessboard of {}x{} inner corners", board.columns, board.rows);
+}
+
+// Finds the board in a batch of frames, in all of their pictures at once.
+void search_batch(const Board& board, const std::vector<Frame>& batch, std::vector<CameraSightings>& cameras) {
+  const size_t num_cameras = cameras.size();
+  std::vector<std::optional<std::vector<Eigen::Vector2d>>> found(batch.size() * num_cameras);
+  parallel_for(found.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      found[i] = find_board(batch[i / num_cameras].images[i % num_cameras], board);
+    }
+  });
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (!found[i]) continue;
+    cameras[i % num_cameras].sightings.push_back({batch[i / num_cameras].index, std::move(*found[i])});
+  }
+}
+
+}  // namespace
+
+Result<BoardSearch> search_board(const Board& board, const std::vector<std::string>& videos,
+                                 const std::vector<std::string>& names, std::optional<double> floor_s,
+                                 Console& console) {
+  Result<Video> video = open_video(videos);
+  if (!video) return video.failure();
+  if (video->is_live()) return error("{}: is live; record it first", video->name());
+  BoardSearch search;
+  for (size_t c = 0; c < videos.size(); ++c) {
+    const int camera = static_cast<int>(c);
+    search.cameras.push_back({.name = names[c], .width = video->width(camera), .height = video->height(camera)});
+  }
+  const int64_t num_frames = video->num_frames_hint();
+  const int64_t step = num_frames > 0 ? std::max<int64_t>(1, num_frames / kFramesToSearch) : kStepOfUnknown;
+
+  std::vector<Frame> batch;
+  std::optional<int64_t> floor_frame;
+  int64_t num_read = 0;
+  for (bool at_end = false; !at_end; ++num_read) {
+    Result<std::optional<Frame>> frame = video->next();
+    if (!frame) return frame.failure();
+    at_end = !frame->has_value();
+    if (!at_end) {
+      const double time_s = static_cast<double>((*frame)->time_ns) * 1e-9;
+      const bool is_floor = floor_s && !floor_frame && time_s > *floor_s - 0.5 / video->fps();
+      if (is_floor) floor_frame = (*frame)->index;
+      if (is_floor || num_read % step == 0) batch.push_back(std::move(**frame));
+    }
+    if (at_end || batch.size() == kBatch) {
+      search_batch(board, batch, search.cameras);
+      search.num_searched += std::ssize(batch);
+      batch.clear();
+    }
+    if (!console.update("looking for the board", num_read, num_frames)) return error("interrupted");
+  }
+
+  for (size_t c = 0; c < videos.size(); ++c) {
+    if (!search.cameras[c].sightings.empty()) continue;
+    return error("{}: no {} in any of {} frames; it must be whole in the picture, with a white margin", videos[c],
+                 board_text(board), search.num_searched);
+  }
+  if (!floor_s) return search;
+  if (!floor_frame) return error("{}: ends before --floor-frame {:g} s", videos[0], *floor_s);
+  const bool is_seen = std::any_of(search.cameras.begin(), search.cameras.end(), [&](const CameraSightings& camera) {
+    return std::any_of(camera.sightings.begin(), camera.sightings.end(),
+                       [&](const Sighting& sighting) { return sighting.instant == floor_frame; });
+  });
+  if (!is_seen) {
+    return error("{}: no {} at {:g} s (frame {}), where --floor-frame says that it lies on the floor",
+                 fmt::join(videos, ", "), board_text(board), *floor_s, *floor_frame);
+  }
+  search.floor_instant = floor_frame;
+  return search;
+}
+
+}  // namespace silpose::app

@@ -1,0 +1,28 @@
+// Looks for a board in videos: which frames, and in which of them which camera sees it.
+// Threads: the main thread only; the search itself uses all cores.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/silpose/console.h"
+#include "silpose/base/result.h"
+#include "silpose/calibrate/calibrate.h"
+
+namespace silpose::app {
+
+struct BoardSearch {
+  std::vector<CameraSightings> cameras;  // [C] sightings by frame number
+  std::optional<int64_t> floor_instant;  // of the frame at floor_s, where somebody sees the board
+  int64_t num_searched = 0;              // frames
+};
+
+// Searches about 200 frames spread over the videos, which are in step, and the one at `floor_s` (seconds). Names [C].
+// Errors: those of open_video(); a live camera; no board anywhere in a video, or in any at `floor_s`; interrupted.
+Result<BoardSearch> search_board(const Board& board, const std::vector<std::string>& videos,
+                                 const std::vector<std::string>& names, std::optional<double> floor_s,
+                                 Console& console);
+
+}  // namespace silpose::app

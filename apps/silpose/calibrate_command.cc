@@ -1,0 +1,137 @@
+// silpose calibrate: cameras from a printed board.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <memory>
+
+#include "apps/silpose/board_search.h"
+#include "apps/silpose/command.h"
+#include "apps/silpose/result_directory.h"
+#include "apps/silpose/run_facts.h"
+#include "silpose/calibrate/calibrate.h"
+#include "silpose/geometry/calibration_file.h"
+
+namespace silpose::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CalibrateOptions {
+  std::vector<std::string> videos, names;
+  std::string out, board = "9x6";
+  std::optional<double> square_mm, floor_s;
+};
+
+Board parse_board(const CalibrateOptions& options) {
+  Board board;
+  const char* const end = options.board.data() + options.board.size();
+  const auto [cross, bad_columns] = std::from_chars(options.board.data(), end, board.columns);
+  const bool has_cross = bad_columns == std::errc() && cross != end && *cross == 'x';
+  const auto [rest, bad_rows] = has_cross ? std::from_chars(cross + 1, end, board.rows) : std::from_chars_result{end};
+  if (!has_cross || bad_rows != std::errc() || rest != end) {
+    throw UsageError(fmt::format("--board: {} is not COLUMNSxROWS", options.board));
+  }
+  if (std::min(board.columns, board.rows) < 3 || std::max(board.columns, board.rows) > 50) {
+    throw UsageError(fmt::format("--board: {} is outside 3x3 to 50x50 inner corners", options.board));
+  }
+  if (options.videos.size() > 1 && !board.has_one_way_up()) {
+    throw UsageError(
+        fmt::format("--board: {} looks the same upside down, and several cameras would mix it up; one "
+                    "number must be odd and one even",
+                    options.board));
+  }
+  if (!options.square_mm) throw UsageError("--square is missing: the side of a square in mm, measured on the print");
+  board.square_m = *options.square_mm / 1000;
+  return board;
+}
+
+// As --camera-name says, or after the files: "calib/left.mp4" is "left".
+std::vector<std::string> camera_names(const CalibrateOptions& options) {
+  std::vector<std::string> names = options.names;
+  if (!names.empty() && names.size() != options.videos.size()) {
+    throw UsageError(fmt::format("--camera-name: {} names for {} videos", names.size(), options.videos.size()));
+  }
+  for (size_t c = names.size(); c < options.videos.size(); ++c) {
+    const fs::path path = options.videos[c];
+    names.push_back((path.has_filename() ? path : path.parent_path()).stem().string());
+  }
+  for (size_t c = 0; c < names.size(); ++c) {
+    if (names[c].empty() || names[c].find('/') != std::string::npos) {
+      throw UsageError(fmt::format("--camera-name: '{}' is no name", names[c]));
+    }
+    if (std::count(names.begin(), names.end(), names[c]) > 1) {
+      throw UsageError(fmt::format("two cameras would be named {}; say --camera-name once a video", names[c]));
+    }
+  }
+  return names;
+}
+
+Outcome outcome_of(const CalibrateOptions& options, const BoardSearch& search, const CameraCalibration& calibration,
+                   const CommonOptions& common) {
+  Outcome outcome;
+  outcome.json = run_facts(common);
+  outcome.json["frames_searched"] = search.num_searched;
+  outcome.json["cameras"] = nlohmann::ordered_json::array();
+  for (size_t c = 0; c < calibration.cameras.size(); ++c) {
+    const PinholeCamera& camera = calibration.cameras[c];
+    const CameraFit& fit = calibration.fits[c];
+    outcome.json["cameras"].push_back({{"name", camera.name},
+                                       {"video", options.videos[c]},
+                                       {"size", {camera.width, camera.height}},
+                                       {"frames_with_board", search.cameras[c].sightings.size()},
+                                       {"views", fit.num_views},
+                                       {"rms_px", fit.rms_px},
+                                       {"focal_px", {camera.fx, camera.fy}},
+                                       {"focal_sd_px", fit.focal_sd_px},
+                                       {"coverage", fit.coverage}});
+    outcome.text += fmt::format(
+        "{}: {} views of {} frames with the board, RMS {:.3f} px, focal length {:.1f} \u00b1 {:.1f} px\n", camera.name,
+        fit.num_views, search.cameras[c].sightings.size(), fit.rms_px, (camera.fx + camera.fy) / 2, fit.focal_sd_px);
+  }
+  outcome.json["rms_px"] = calibration.rms_px;
+  outcome.json["floor"] = search.floor_instant ? "board" : "assumed";
+  outcome.json["warnings"] = calibration.warnings;
+  outcome.json["out"] = options.out;
+  outcome.text += fmt::format("written to {}", options.out);
+  return outcome;
+}
+
+Result<Outcome> run_calibrate(const CalibrateOptions& options, const CommonOptions& common, Console& console) {
+  const Board board = parse_board(options);
+  const std::vector<std::string> names = camera_names(options);
+  if (fs::is_directory(options.out)) return error("{}: is a directory", options.out);
+  const Result<BoardSearch> search = search_board(board, options.videos, names, options.floor_s, console);
+  if (!search) return search.failure();
+  console.update("fitting cameras", 0, 0);
+  const Result<CameraCalibration> calibration = calibrate_cameras(board, search->cameras, search->floor_instant);
+  if (!calibration) return calibration.failure();
+  if (Console::interrupted()) return error("interrupted");
+  const Result<void> written =
+      write_whole(options.out, [&](const fs::path& path) { return write_cameras(path, calibration->cameras); });
+  if (!written) return written.failure();
+  for (const std::string& warning : calibration->warnings) console.warning(warning);
+  return outcome_of(options, *search, *calibration, common);
+}
+
+}  // namespace
+
+Command add_calibrate(CLI::App& program, const CommonOptions& common) {
+  const auto options = std::make_shared<CalibrateOptions>();
+  CLI::App* const app = program.add_subcommand("calibrate", "Cameras from a printed chessboard moved before them");
+  app->add_option(
+         "VIDEO", options->videos,
+         "The board, tilted this way and that all over the picture; one a camera, in step, the same board in all")
+      ->required();
+  app->add_option("--out", options->out, "Calibration file (TOML) for --camera of the other commands")->required();
+  app->add_option("--board", options->board, "Inner corners, COLUMNSxROWS")->capture_default_str();
+  app->add_option("--square", options->square_mm, "Side of a square, mm")->check(within(0.1, 10'000));
+  app->add_option("--floor-frame", options->floor_s,
+                  "Seconds: when the board lies on the floor, y = 0; without it the first camera is taken to be level")
+      ->check(within(0, 1e6));
+  app->add_option("--camera-name", options->names, "Name of a camera, once a video (default: the files' names)")
+      ->allow_extra_args(false);
+  return {app, [options, &common](Console& console) { return run_calibrate(*options, common, console); }};
+}
+
+}  // namespace silpose::app

@@ -1,0 +1,87 @@
+#include "silpose/calibrate/board.h"
+
+#include <algorithm>
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "silpose/base/check.h"
+
+namespace silpose {
+namespace {
+
+constexpr double kPixelCentre = 0.5;  // the library's pixels less OpenCV's
+constexpr int kSearchSide = 1280;     // pixels; larger pictures are searched at half the size or less
+
+// Brightness in the middle of the square whose first corner is (column, row).
+double square_brightness(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, const Board& board, int column,
+                         int row) {
+  const size_t first = static_cast<size_t>(row) * board.columns + column, below = first + board.columns;
+  const cv::Point2f middle = (corners[first] + corners[first + 1] + corners[below] + corners[below + 1]) / 4;
+  cv::Mat patch;
+  cv::getRectSubPix(grey, {3, 3}, middle, patch);
+  return cv::mean(patch)[0];
+}
+
+// Puts the corners, row by row as they were found, into the order of board_points().
+void order_corners(const cv::Mat& grey, const Board& board, std::vector<cv::Point2f>& corners) {
+  const cv::Point2f along = corners[board.columns - 1] - corners[0],
+                    down = corners[corners.size() - board.columns] - corners[0];
+  if (along.cross(down) < 0) {  // a mirror image: rows run the other way
+    for (int r = 0; r < board.rows; ++r) {
+      std::reverse(corners.begin() + r * board.columns, corners.begin() + (r + 1) * board.columns);
+    }
+  }
+  if (!board.has_one_way_up()) return;
+  double difference = 0;  // of light squares less dark ones, were the first square dark
+  for (int r = 0; r + 1 < board.rows; ++r) {
+    for (int c = 0; c + 1 < board.columns; ++c) {
+      difference += ((r + c) % 2 == 0 ? -1 : 1) * square_brightness(grey, corners, board, c, r);
+    }
+  }
+  if (difference < 0) std::reverse(corners.begin(), corners.end());
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> board_points(const Board& board) {
+  std::vector<Eigen::Vector3d> points;
+  for (int r = 0; r < board.rows; ++r) {
+    for (int c = 0; c < board.columns; ++c) points.emplace_back(c * board.square_m, r * board.square_m, 0);
+  }
+  return points;
+}
+
+std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& picture, const Board& board) {
+  check(picture.channels() == 3, "find_board: picture of {} channels", picture.channels());
+  check(board.columns >= 3 && board.rows >= 3, "find_board: board of {}x{} corners", board.columns, board.rows);
+  const cv::Mat colour(picture.height(), picture.width(), CV_8UC3, const_cast<uint8_t*>(picture.pixels().data()));
+  cv::Mat grey, searched;
+  cv::cvtColor(colour, grey, cv::COLOR_BGR2GRAY);
+  const double scale = std::min(1.0, double(kSearchSide) / std::max(grey.cols, grey.rows));
+  if (scale < 1) {
+    cv::resize(grey, searched, {}, scale, scale, cv::INTER_AREA);
+  } else {
+    searched = grey;
+  }
+  std::vector<cv::Point2f> corners;
+  if (!cv::findChessboardCornersSB(searched, {board.columns, board.rows}, corners, cv::CALIB_CB_ACCURACY)) {
+    return std::nullopt;
+  }
+  if (scale < 1) {
+    double spacing = 1e9;  // least distance of neighbours in a row, in the whole picture
+    for (size_t i = 0; i < corners.size(); ++i) {
+      corners[i] = {static_cast<float>((corners[i].x + 0.5) / scale - 0.5),
+                    static_cast<float>((corners[i].y + 0.5) / scale - 0.5)};
+      if (i % board.columns > 0) spacing = std::min(spacing, cv::norm(corners[i] - corners[i - 1]));
+    }
+    const int half = std::clamp(static_cast<int>(spacing / 4), 2, 11);
+    cv::cornerSubPix(grey, corners, {half, half}, {-1, -1},
+                     {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 40, 1e-3});
+  }
+  order_corners(grey, board, corners);
+  std::vector<Eigen::Vector2d> pixels;
+  for (const cv::Point2f& corner : corners) pixels.emplace_back(corner.x + kPixelCentre, corner.y + kPixelCentre);
+  return pixels;
+}
+
+}  // namespace silpose
