@@ -20,13 +20,15 @@ std::string board_text(const Board& board) {
   return fmt::format("chessboard of {}x{} inner corners", board.columns, board.rows);
 }
 
-// Finds the board in a batch of frames, in all of their pictures at once.
-void search_batch(const Board& board, const std::vector<Frame>& batch, std::vector<CameraSightings>& cameras) {
+// Finds the board in a batch of frames, in all of their pictures at once; thoroughly where it lies on the floor.
+void search_batch(const Board& board, const std::vector<Frame>& batch, std::optional<int64_t> floor_frame,
+                  std::vector<CameraSightings>& cameras) {
   const size_t num_cameras = cameras.size();
   std::vector<std::optional<std::vector<Eigen::Vector2d>>> found(batch.size() * num_cameras);
   parallel_for(found.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      found[i] = find_board(batch[i / num_cameras].images[i % num_cameras], board);
+      const Frame& frame = batch[i / num_cameras];
+      found[i] = find_board(frame.images[i % num_cameras], board, frame.index == floor_frame);
     }
   });
   for (size_t i = 0; i < found.size(); ++i) {
@@ -65,7 +67,7 @@ Result<BoardSearch> search_board(const Board& board, const std::vector<std::stri
       if (is_floor || num_read % step == 0) batch.push_back(std::move(**frame));
     }
     if (at_end || batch.size() == kBatch) {
-      search_batch(board, batch, search.cameras);
+      search_batch(board, batch, floor_frame, search.cameras);
       search.num_searched += std::ssize(batch);
       batch.clear();
     }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <utility>
 
 #include "silpose/base/check.h"
 
@@ -10,7 +11,7 @@ namespace silpose {
 namespace {
 
 constexpr double kPixelCentre = 0.5;  // the library's pixels less OpenCV's
-constexpr int kSearchSide = 1280;     // pixels; larger pictures are searched at half the size or less
+constexpr int kSearchSide = 1280;     // pixels; larger pictures are made smaller to look for a board in them
 
 // Brightness in the middle of the square whose first corner is (column, row).
 double square_brightness(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, const Board& board, int column,
@@ -41,6 +42,32 @@ void order_corners(const cv::Mat& grey, const Board& board, std::vector<cv::Poin
   if (difference < 0) std::reverse(corners.begin(), corners.end());
 }
 
+// Corners to about a tenth of a pixel of the picture searched; none where there is no board.
+std::vector<cv::Point2f> find_roughly(const cv::Mat& grey, cv::Size pattern) {
+  const double scale = std::min(1.0, double(kSearchSide) / std::max(grey.cols, grey.rows));
+  cv::Mat searched = grey;
+  if (scale < 1) cv::resize(grey, searched, {}, scale, scale, cv::INTER_AREA);
+  std::vector<cv::Point2f> corners;
+  if (!cv::findChessboardCornersSB(searched, pattern, corners, cv::CALIB_CB_NORMALIZE_IMAGE)) return {};
+  for (cv::Point2f& corner : corners) {
+    corner = {static_cast<float>((corner.x + 0.5) / scale - 0.5), static_cast<float>((corner.y + 0.5) / scale - 0.5)};
+  }
+  return corners;
+}
+
+// Looks again where the board is, at full size and with all care, which in the whole picture would take long.
+void locate_exactly(const cv::Mat& grey, cv::Size pattern, std::vector<cv::Point2f>& corners) {
+  const cv::Rect board = cv::boundingRect(corners);
+  const int margin = 2 * std::max(board.width, board.height) / std::min(pattern.width, pattern.height);
+  const cv::Rect around =
+      cv::Rect(board.x - margin, board.y - margin, board.width + 2 * margin, board.height + 2 * margin) &
+      cv::Rect(0, 0, grey.cols, grey.rows);
+  std::vector<cv::Point2f> exact;
+  if (!cv::findChessboardCornersSB(grey(around), pattern, exact, cv::CALIB_CB_ACCURACY)) return;
+  corners = std::move(exact);
+  for (cv::Point2f& corner : corners) corner += cv::Point2f(around.tl());
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3d> board_points(const Board& board) {
@@ -51,32 +78,18 @@ std::vector<Eigen::Vector3d> board_points(const Board& board) {
   return points;
 }
 
-std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& picture, const Board& board) {
+std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& picture, const Board& board, bool thorough) {
   check(picture.channels() == 3, "find_board: picture of {} channels", picture.channels());
   check(board.columns >= 3 && board.rows >= 3, "find_board: board of {}x{} corners", board.columns, board.rows);
   const cv::Mat colour(picture.height(), picture.width(), CV_8UC3, const_cast<uint8_t*>(picture.pixels().data()));
-  cv::Mat grey, searched;
+  cv::Mat grey;
   cv::cvtColor(colour, grey, cv::COLOR_BGR2GRAY);
-  const double scale = std::min(1.0, double(kSearchSide) / std::max(grey.cols, grey.rows));
-  if (scale < 1) {
-    cv::resize(grey, searched, {}, scale, scale, cv::INTER_AREA);
-  } else {
-    searched = grey;
-  }
-  std::vector<cv::Point2f> corners;
-  if (!cv::findChessboardCornersSB(searched, {board.columns, board.rows}, corners, cv::CALIB_CB_ACCURACY)) {
+  const cv::Size pattern(board.columns, board.rows);
+  std::vector<cv::Point2f> corners = find_roughly(grey, pattern);
+  if (!corners.empty()) {
+    locate_exactly(grey, pattern, corners);
+  } else if (!thorough || !cv::findChessboardCornersSB(grey, pattern, corners, cv::CALIB_CB_ACCURACY)) {
     return std::nullopt;
-  }
-  if (scale < 1) {
-    double spacing = 1e9;  // least distance of neighbours in a row, in the whole picture
-    for (size_t i = 0; i < corners.size(); ++i) {
-      corners[i] = {static_cast<float>((corners[i].x + 0.5) / scale - 0.5),
-                    static_cast<float>((corners[i].y + 0.5) / scale - 0.5)};
-      if (i % board.columns > 0) spacing = std::min(spacing, cv::norm(corners[i] - corners[i - 1]));
-    }
-    const int half = std::clamp(static_cast<int>(spacing / 4), 2, 11);
-    cv::cornerSubPix(grey, corners, {half, half}, {-1, -1},
-                     {cv::TermCriteria::EPS | cv::TermCriteria::COUNT, 40, 1e-3});
   }
   order_corners(grey, board, corners);
   std::vector<Eigen::Vector2d> pixels;

@@ -25,7 +25,9 @@ struct Board {
 [[nodiscard]] std::vector<Eigen::Vector3d> board_points(const Board& board);
 
 // Pixels [N] of the inner corners in the order of board_points(); nothing where the whole board is not seen. The square
-// between the first four is dark where the board has one way up. REQUIRES: picture of 3 channels.
-[[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& picture, const Board& board);
+// between the first four is dark where the board has one way up. `thorough` takes up to ten times as long and finds a
+// board that is small in a large picture, too. REQUIRES: picture of 3 channels.
+[[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& picture, const Board& board,
+                                                                     bool thorough = false);
 
 }  // namespace silpose

@@ -36,7 +36,7 @@ TEST(FindBoardTest, CornersAreWhereTheyAreAndInOrderWhicheverWayTheBoardIsTurned
   }
 }
 
-TEST(FindBoardTest, LargePicturesAreRefined) {
+TEST(FindBoardTest, CornersInLargePicturesAreAsExact) {
   PinholeCamera camera = look_at_camera(1440, 810, 1200, {0, 1, 1}, {0, 1, 0});
   const Board board{.columns = 6, .rows = 5, .square_m = 0.06};
   const BoardFilm film(camera);
@@ -45,6 +45,18 @@ TEST(FindBoardTest, LargePicturesAreRefined) {
   const auto found = find_board(film.picture(board, pose, rng), board);
   ASSERT_TRUE(found);
   EXPECT_LT(largest_error(board, camera, pose, *found), 0.3);
+}
+
+TEST(FindBoardTest, AThoroughSearchFindsABoardFarAwayOnTheFloor) {
+  const Board board{.columns = 9, .rows = 6, .square_m = 0.03};
+  const BoardFilm film(look_at_camera(1920, 540, 1600, {0, 1.5, 0}, {0, 0, -4}));
+  Rng rng(8);
+  const Rigid3 pose = board_on_floor(board, 0.1, -4);
+  const ByteImage picture = film.picture(board, pose, rng);
+  EXPECT_FALSE(find_board(picture, board));
+  const auto found = find_board(picture, board, true);
+  ASSERT_TRUE(found);
+  EXPECT_LT(largest_error(board, film.camera(), pose, *found), 0.5);
 }
 
 TEST(FindBoardTest, NothingWhereThereIsNoneOrOnlyPartOfIt) {
