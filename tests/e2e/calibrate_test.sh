@@ -70,7 +70,7 @@ expect_failure 2 'upside down' calibrate left.mp4 right.mp4 --out rig.toml --squ
 expect_failure 2 'named left' calibrate left.mp4 left.mp4 --out rig.toml --square 60 --board 8x5
 expect_failure 2 'camera-name' calibrate left.mp4 right.mp4 --out rig.toml --square 60 --camera-name one
 expect_failure 1 'absent.mp4' calibrate absent.mp4 --out rig.toml --square 60
-expect_failure 1 'left.mp4: no chessboard of 7x4' calibrate left.mp4 --out rig.toml --square 60 --board 7x4
+expect_failure 1 'left.mp4: no chessboard of 11x6' calibrate left.mp4 --out rig.toml --square 60 --board 11x6
 expect_failure 1 'ends before --floor-frame 9' calibrate left.mp4 --out rig.toml --square 60 --board 8x5 --floor-frame 9
 expect_failure 1 'seen: is a directory' calibrate left.mp4 --out seen --square 60 --board 8x5
 cmp -s before.toml rig.toml || fail "a failure changed the earlier calibration"
@@ -79,7 +79,11 @@ cmp -s before.toml rig.toml || fail "a failure changed the earlier calibration"
 status=0
 "$silpose" "${calibrate[@]}" --out stopped.toml --quiet --json >out.json 2>err.txt &
 process=$!
-sleep 0.3
+for ((wait = 0; wait < 300; ++wait)); do  # until it listens to signals: bit 2 is SIGINT
+  caught=$(sed -n 's/^SigCgt:[[:space:]]*//p' /proc/$process/status)
+  [[ $((16#${caught:-0} & 2)) != 0 ]] && break
+  sleep 0.02
+done
 kill -INT $process
 wait $process || status=$?
 [[ $status == 130 && ! -e stopped.toml && ! -e stopped.partial.toml ]] || fail "exit $status, not 130: $(cat err.txt)"
