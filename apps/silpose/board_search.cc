@@ -41,11 +41,15 @@ void search_batch(const Board& board, const std::vector<Frame>& batch, std::opti
 
 Result<BoardSearch> search_board(const Board& board, const std::vector<std::string>& videos,
                                  const std::vector<std::string>& names, std::optional<double> floor_s,
-                                 Console& console) {
-  Result<Video> video = open_video(videos);
+                                 std::optional<double> fps, Console& console) {
+  Result<Video> video = open_video(videos, {.default_fps = fps.value_or(30)});
   if (!video) return video.failure();
   if (video->is_live()) return error("{}: is live; record it first", video->name());
   BoardSearch search;
+  if (floor_s && video->fps_assumed() && !fps) {
+    search.warnings.push_back(
+        fmt::format("{}: carries no frame rate, {} a second assumed", video->name(), video->fps()));
+  }
   for (size_t c = 0; c < videos.size(); ++c) {
     const int camera = static_cast<int>(c);
     search.cameras.push_back({.name = names[c], .width = video->width(camera), .height = video->height(camera)});

@@ -17,12 +17,14 @@ struct BoardSearch {
   std::vector<CameraSightings> cameras;  // [C] sightings by frame number
   std::optional<int64_t> floor_instant;  // of the frame at floor_s, where somebody sees the board
   int64_t num_searched = 0;              // frames
+  std::vector<std::string> warnings;
 };
 
-// Searches about 200 frames spread over the videos, which are in step, and the one at `floor_s` (seconds). Names [C].
+// Searches about 200 frames spread over the videos, which are in step, and the one at `floor_s` (seconds; of input that
+// carries no rate, at `fps`, or 30 with a warning). Names [C].
 // Errors: those of open_video(); a live camera; no board anywhere in a video, or in any at `floor_s`; interrupted.
 Result<BoardSearch> search_board(const Board& board, const std::vector<std::string>& videos,
                                  const std::vector<std::string>& names, std::optional<double> floor_s,
-                                 Console& console);
+                                 std::optional<double> fps, Console& console);
 
 }  // namespace silpose::app

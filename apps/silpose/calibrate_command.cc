@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 struct CalibrateOptions {
   std::vector<std::string> videos, names;
   std::string out, board = "9x6";
-  std::optional<double> square_mm, floor_s;
+  std::optional<double> square_mm, floor_s, fps;
 };
 
 Board parse_board(const CalibrateOptions& options) {
@@ -68,7 +68,7 @@ std::vector<std::string> camera_names(const CalibrateOptions& options) {
 }
 
 Outcome outcome_of(const CalibrateOptions& options, const BoardSearch& search, const CameraCalibration& calibration,
-                   const CommonOptions& common) {
+                   const std::vector<std::string>& warnings, const CommonOptions& common) {
   Outcome outcome;
   outcome.json = run_facts(common);
   outcome.json["frames_searched"] = search.num_searched;
@@ -91,7 +91,7 @@ Outcome outcome_of(const CalibrateOptions& options, const BoardSearch& search, c
   }
   outcome.json["rms_px"] = calibration.rms_px;
   outcome.json["floor"] = search.floor_instant ? "board" : "assumed";
-  outcome.json["warnings"] = calibration.warnings;
+  outcome.json["warnings"] = warnings;
   outcome.json["out"] = options.out;
   outcome.text += fmt::format("written to {}", options.out);
   return outcome;
@@ -101,7 +101,7 @@ Result<Outcome> run_calibrate(const CalibrateOptions& options, const CommonOptio
   const Board board = parse_board(options);
   const std::vector<std::string> names = camera_names(options);
   if (fs::is_directory(options.out)) return error("{}: is a directory", options.out);
-  const Result<BoardSearch> search = search_board(board, options.videos, names, options.floor_s, console);
+  const Result<BoardSearch> search = search_board(board, options.videos, names, options.floor_s, options.fps, console);
   if (!search) return search.failure();
   console.update("fitting cameras", 0, 0);
   const Result<CameraCalibration> calibration = calibrate_cameras(board, search->cameras, search->floor_instant);
@@ -110,8 +110,10 @@ Result<Outcome> run_calibrate(const CalibrateOptions& options, const CommonOptio
   const Result<void> written =
       write_whole(options.out, [&](const fs::path& path) { return write_cameras(path, calibration->cameras); });
   if (!written) return written.failure();
-  for (const std::string& warning : calibration->warnings) console.warning(warning);
-  return outcome_of(options, *search, *calibration, common);
+  std::vector<std::string> warnings = search->warnings;
+  warnings.insert(warnings.end(), calibration->warnings.begin(), calibration->warnings.end());
+  for (const std::string& warning : warnings) console.warning(warning);
+  return outcome_of(options, *search, *calibration, warnings, common);
 }
 
 }  // namespace
@@ -129,6 +131,8 @@ Command add_calibrate(CLI::App& program, const CommonOptions& common) {
   app->add_option("--floor-frame", options->floor_s,
                   "Seconds: when the board lies on the floor, y = 0; without it the first camera is taken to be level")
       ->check(within(0, 1e6));
+  app->add_option("--fps", options->fps, "Frames a second of input that carries no rate (30, with a warning)")
+      ->check(within(0.1, 10'000));
   app->add_option("--camera-name", options->names, "Name of a camera, once a video (default: the files' names)")
       ->allow_extra_args(false);
   return {app, [options, &common](Console& console) { return run_calibrate(*options, common, console); }};
