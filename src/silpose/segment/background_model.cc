@@ -11,8 +11,10 @@
 namespace silpose {
 namespace {
 
-// Grey levels. Compressed video repeats blocks unchanged, so a deviation of 0 over time does not mean no noise.
-constexpr std::array<float, 3> kNoiseFloor = {2.5f, 1.1f, 1.1f};
+// Grey levels. Compressed video repeats blocks of an empty scene unchanged, so a deviation of 0 over time does not mean
+// no noise: where somebody moves, blocks are coded anew, and edges of the scene come out a little different.
+constexpr std::array<float, 3> kNoiseFloor = {3.5f, 2.0f, 2.0f};
+constexpr double kNoiseOfSlope = 0.2, kPlateNoiseOfSlope = 0.4;
 // A plate is encoded and exposed by itself.
 constexpr std::array<float, 3> kPlateFloor = {3.0f, 1.8f, 1.8f};
 constexpr float kMadToDeviation = 1.4826f;
@@ -102,16 +104,29 @@ void steady_noise(Image<float>& noise, const std::array<float, 3>& floor) {
   view = cv::max(view * 0.5 + around * 0.5, cv::Scalar(floor[0], floor[1], floor[2]));
 }
 
-}  // namespace
-
-ByteImage to_luma_chroma(const ByteImage& image) {
-  check(image.channels() == 3, "to_luma_chroma: {} channels", image.channels());
+ByteImage convert(const ByteImage& image, int conversion) {
+  check(image.channels() == 3, "background: a picture of {} channels", image.channels());
   ByteImage converted(image.width(), image.height(), 3);
   cv::Mat to(image.height(), image.width(), CV_8UC3, converted.pixels().data());
   cv::cvtColor(cv::Mat(image.height(), image.width(), CV_8UC3, const_cast<uint8_t*>(image.pixels().data())), to,
-               cv::COLOR_BGR2YCrCb);
+               conversion);
   return converted;
 }
+
+// `share` of what the picture changes from pixel to pixel: so much of a shift is taken for noise.
+cv::Mat slope_of(const ByteImage& image, double share) {
+  const cv::Mat view(image.height(), image.width(), CV_8UC3, const_cast<uint8_t*>(image.pixels().data()));
+  cv::Mat slope_x, slope_y;
+  cv::Sobel(view, slope_x, CV_32F, 1, 0, 3, 1.0 / 8);
+  cv::Sobel(view, slope_y, CV_32F, 0, 1, 3, 1.0 / 8);
+  return share * (cv::abs(slope_x) + cv::abs(slope_y));
+}
+
+}  // namespace
+
+ByteImage to_luma_chroma(const ByteImage& image) { return convert(image, cv::COLOR_BGR2YCrCb); }
+
+ByteImage from_luma_chroma(const ByteImage& image) { return convert(image, cv::COLOR_YCrCb2BGR); }
 
 Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t> end_ns, ProgressSink* progress) {
   const int64_t limit = max_samples(video);
@@ -148,6 +163,8 @@ BackgroundModel learn_background(const BackgroundSamples& samples) {
   const int width = samples.images[0].width(), height = samples.images[0].height();
   BackgroundModel model{.median = ByteImage(width, height, 3), .noise = Image<float>(width, height, 3)};
   median_and_deviation(samples.images, model.median, model.noise);
+  cv::Mat noise(height, width, CV_32FC3, model.noise.pixels().data());
+  noise += slope_of(model.median, kNoiseOfSlope);
   steady_noise(model.noise, kNoiseFloor);
   return model;
 }
@@ -164,11 +181,7 @@ BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSa
   // Where the subject comes and goes the deviation is not noise: not more than a few floors of it is believed. A plate
   // is its own exposure and may lie a fraction of a pixel off, hence the slope of the picture.
   cv::Mat noise(plate.height(), plate.width(), CV_32FC3, model.noise.pixels().data());
-  const cv::Mat median(plate.height(), plate.width(), CV_8UC3, model.median.pixels().data());
-  cv::Mat slope_x, slope_y;
-  cv::Sobel(median, slope_x, CV_32F, 1, 0, 3, 1.0 / 8);
-  cv::Sobel(median, slope_y, CV_32F, 0, 1, 3, 1.0 / 8);
-  const cv::Mat slope = 0.4 * (cv::abs(slope_x) + cv::abs(slope_y));
+  const cv::Mat slope = slope_of(model.median, kPlateNoiseOfSlope);
   noise = cv::min(noise, 3 * cv::Scalar(kPlateFloor[0], kPlateFloor[1], kPlateFloor[2])) + slope;
   steady_noise(model.noise, kPlateFloor);
   return model;

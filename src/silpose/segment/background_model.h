@@ -50,7 +50,8 @@ struct BackgroundDoubt {
 BackgroundDoubt doubt_background(const BackgroundModel& model, const BackgroundSamples& samples,
                                  const std::optional<Box>& region = {});
 
-// 8-bit B, G, R to Y, Cr, Cb.
+// 8-bit B, G, R to Y, Cr, Cb, and back.
 ByteImage to_luma_chroma(const ByteImage& image);
+ByteImage from_luma_chroma(const ByteImage& image);
 
 }  // namespace silpose

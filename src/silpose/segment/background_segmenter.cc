@@ -1,10 +1,13 @@
 #include "silpose/segment/background_segmenter.h"
 
+#include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/background_segm.hpp>
 #include <utility>
 
+#include "silpose/segment/edge_matte.h"
 #include "silpose/segment/foreground.h"
+#include "silpose/segment/mask_confidence.h"
 #include "silpose/segment/trust_monitor.h"
 
 namespace silpose {
@@ -13,22 +16,35 @@ namespace {
 class BackgroundSegmenter : public Segmenter {
  public:
   BackgroundSegmenter(BackgroundModel model, BackgroundSegmenterOptions options)
-      : options_(std::move(options)), finder_(std::move(model)) {}
+      : options_(std::move(options)), finder_(std::move(model)), blob_(options_.clean_up) {
+    blob_.grow_px = 0;  // last
+    blob_.join_gap = std::min(blob_.join_gap, kGap);
+  }
 
   Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
     if (image.width() != finder_.model().width() || image.height() != finder_.model().height()) {
       return error("frame {}: {}x{}, its background {}x{}", index, image.width(), image.height(),
                    finder_.model().width(), finder_.model().height());
     }
-    return monitor_.judge(choose_blob(finder_.find(to_luma_chroma(image)), options_.clean_up));
+    const ByteImage luma_chroma = to_luma_chroma(image);
+    const Mask found = finder_.find(luma_chroma);
+    const Mask blob = choose_blob(found, blob_);
+    ByteImage confidence = finder_.confidence(found);
+    doubt_changes(confidence, found, blob);
+    const EdgeMatte matte = refine_edge(blob, luma_chroma, finder_.model().median);
+    lower_confidence(confidence, matte.confidence);
+    forgive_edges(confidence, matte.mask);
+    return monitor_.judge(grow(matte.mask, options_.clean_up.grow_px), std::move(confidence));
   }
   [[nodiscard]] int64_t first_index() const override { return options_.first_index; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
   [[nodiscard]] std::string name() const override { return options_.name; }
 
  private:
+  static constexpr double kGap = 0.003;  // of the picture's height: fingers and knees stay apart
   BackgroundSegmenterOptions options_;
   ForegroundFinder finder_;
+  CleanUpOptions blob_;
   TrustMonitor monitor_;
 };
 

@@ -18,17 +18,20 @@ constexpr float kThreshold = 22;
 // Evidence of one pixel is bounded, so that neighbours can outvote it.
 constexpr float kMaxAgainst = 4, kMaxFor = 6;
 // Shadows darken to half at most: the deviation of the factor. Light thrown back brightens far less.
-constexpr float kShadowDeviation = 0.1f, kGlowDeviation = 0.04f;
+constexpr float kShadowDeviation = 0.15f, kGlowDeviation = 0.04f;
 // A shadow keeps the background's texture: windows in which the luma is compared, and the weight of what is left over,
 // in noise variances.
-constexpr int kReach = 3;
+// Small windows: a shadow on the floor is seen at a low angle and is a narrow strip.
+constexpr int kReach = 1;
 constexpr float kTextureWeight = 3;
 // Weight of the eight neighbours together, and the step of colour (grey levels) across which they count half.
 constexpr float kNeighbours = 4, kContrast = 12;
 constexpr int kIterations = 4;
 // A shadow lies beside the subject; "shadow" with more than this part of its outline against the subject is the
 // subject.
-constexpr double kEnclosed = 0.6;
+constexpr double kEnclosed = 0.4;
+// Confidence: beliefs from this on are sure; what is shadow or subject is a guess.
+constexpr float kSureBelief = 0.5f, kSureOfShadow = 0.4f;
 
 float square(float x) { return x * x; }
 
@@ -279,6 +282,21 @@ void ForegroundFinder::keep_enclosed_shadows(Mask& mask) const {
       }
     }
   }
+}
+
+ByteImage ForegroundFinder::confidence(const Mask& found) const {
+  ByteImage confidence(model_.width(), model_.height(), 1, 255);
+  for_each_run([&](int x0, int x1, int y) {
+    const float* belief = &belief_[(static_cast<size_t>(y) + 1) * stride_ + 1];
+    const uint8_t* differs = &differs_[static_cast<size_t>(y) * static_cast<size_t>(model_.width())];
+    for (int x = x0; x < x1; ++x) {
+      float sure = std::min(std::abs(belief[x]) / kSureBelief, 1.0f);
+      if (differs[x] && !found.get(x, y)) sure = std::min(sure, kSureOfShadow);
+      if (belief[x] <= 0 && found.get(x, y)) sure = std::min(sure, kSureOfShadow);
+      confidence.at(x, y) = static_cast<uint8_t>(255 * sure);
+    }
+  });
+  return confidence;
 }
 
 Mask ForegroundFinder::find(const ByteImage& luma_chroma) {

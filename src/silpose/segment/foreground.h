@@ -20,6 +20,9 @@ class ForegroundFinder {
   // [H, W] of a picture [H, W, 3] in Y, Cr, Cb. REQUIRES: the model's size.
   Mask find(const ByteImage& luma_chroma);
 
+  // [H, W] How sure the last find() is, 255: sure. What only a shadow explains is not, whichever way it was decided.
+  [[nodiscard]] ByteImage confidence(const Mask& found) const;
+
   [[nodiscard]] const BackgroundModel& model() const { return model_; }
 
  private:

@@ -7,6 +7,9 @@
 #include <optional>
 #include <utility>
 
+#include "silpose/segment/edge_matte.h"
+#include "silpose/segment/mask_confidence.h"
+#include "silpose/segment/plate.h"
 #include "silpose/segment/trust_monitor.h"
 
 namespace silpose {
@@ -19,6 +22,8 @@ constexpr int kMaxLooks = 8;                              // until the square fi
 constexpr std::array<double, 3> kZooms = {1, 1.75, 3.5};  // small persons are sought in parts of the picture,
 constexpr int kSearchEvery = 10;                          // but not in every picture without anybody
 constexpr double kMinSide = 24;                           // px, of a square with a person
+constexpr float kSureLogit = 5;
+constexpr size_t kMaxLearned = 40;
 
 bool is_settled(const PictureSquare& before, const PictureSquare& after) {
   const double turned = std::remainder(after.turn_rad - before.turn_rad, 2 * std::numbers::pi);
@@ -31,22 +36,30 @@ class LearnedSegmenter : public Segmenter {
   LearnedSegmenter(PersonNetwork network, PersonDetector detector, const CleanUpOptions& clean_up)
       : network_(std::move(network)), detector_(std::move(detector)), clean_up_(clean_up) {}
 
-  Result<Segmentation> segment(const ByteImage& image, int64_t /*index*/) override {
-    std::optional<PersonReading> reading;
-    if (square_) {
-      reading = network_.read(image, *square_);
-      if (!can_go_on(*reading, kStillPresent)) {
-        reading.reset();
-        ++num_lost_;
-      }
+  // A few dozen pictures show what is behind; the network takes its time.
+  void learn(const BackgroundSamples& samples) {
+    const size_t step = (samples.images.size() + kMaxLearned - 1) / kMaxLearned;
+    std::vector<ByteImage> pictures;
+    std::vector<Mask> masks;
+    for (size_t i = 0; i < samples.images.size(); i += step) {
+      pictures.push_back(samples.images[i]);
+      masks.push_back(find_mask(from_luma_chroma(samples.images[i])).kept);
     }
-    if (!reading) reading = find(image);
-    Mask mask(image.width(), image.height());
-    if (reading) mask = choose_blob(reading->mask_in_picture(image.width(), image.height()), clean_up_);
+    plate_ = learn_plate(pictures, masks);
     square_.reset();
-    if (mask.count() > 0) square_ = reading->next_square();
-    num_without_ = square_ ? 0 : num_without_ + 1;
-    return monitor_.judge(std::move(mask));
+    num_without_ = num_lost_ = 0;
+  }
+
+  Result<Segmentation> segment(const ByteImage& image, int64_t /*index*/) override {
+    Found found = find_mask(image);
+    Mask mask = std::move(found.kept);
+    if (plate_ && mask.count() > 0) {
+      EdgeMatte matte = refine_edge(mask, to_luma_chroma(image), plate_->colours, &plate_->known);
+      lower_confidence(found.confidence, matte.confidence);
+      mask = std::move(matte.mask);
+    }
+    forgive_edges(found.confidence, mask);
+    return monitor_.judge(grow(mask, clean_up_.grow_px), std::move(found.confidence));
   }
 
   [[nodiscard]] std::vector<std::string> warnings() const override {
@@ -63,6 +76,48 @@ class LearnedSegmenter : public Segmenter {
   [[nodiscard]] std::string name() const override { return "learned"; }
 
  private:
+  struct Found {
+    Mask kept;             // [H, W] the person, empty where there is none
+    ByteImage confidence;  // [H, W]
+  };
+
+  // By the network alone; follows the person.
+  Found find_mask(const ByteImage& image) {
+    std::optional<PersonReading> reading;
+    if (square_) {
+      reading = network_.read(image, *square_);
+      if (!can_go_on(*reading, kStillPresent)) {
+        reading.reset();
+        ++num_lost_;
+      }
+    }
+    if (!reading) reading = find(image);
+    Found found{Mask(image.width(), image.height()), ByteImage(image.width(), image.height(), 1, 255)};
+    if (reading) {
+      const Image<float> logits = reading->logits_in_picture(image.width(), image.height());
+      Mask person(image.width(), image.height());
+      for (int y = 0; y < image.height(); ++y) {
+        const auto row = logits.row(y);
+        for (int x = 0; x < image.width(); ++x) {
+          const float logit = row[static_cast<size_t>(x)];
+          if (logit > 0) person.set(x, y);
+          // Twice the distance of the probability from a half.
+          if (std::abs(logit) < kSureLogit) {
+            found.confidence.at(x, y) = static_cast<uint8_t>(255 * std::tanh(0.5f * std::abs(logit)));
+          }
+        }
+      }
+      CleanUpOptions whole = clean_up_;
+      whole.grow_px = 0;  // last
+      found.kept = choose_blob(person, whole);
+      doubt_changes(found.confidence, person, found.kept);
+    }
+    square_.reset();
+    if (found.kept.count() > 0) square_ = reading->next_square();
+    num_without_ = square_ ? 0 : num_without_ + 1;
+    return found;
+  }
+
   static bool can_go_on(const PersonReading& reading, double least_presence) {
     const PictureSquare next = reading.next_square();
     return reading.presence >= least_presence && next.side >= kMinSide && next.side < 1e5;
@@ -123,6 +178,7 @@ class LearnedSegmenter : public Segmenter {
   PersonDetector detector_;
   CleanUpOptions clean_up_;
   TrustMonitor monitor_;
+  std::optional<Plate> plate_;
   std::optional<PictureSquare> square_;  // where the person is looked for next
   int num_without_ = 0;                  // pictures since somebody was seen
   int num_lost_ = 0;
@@ -132,8 +188,11 @@ class LearnedSegmenter : public Segmenter {
 }  // namespace
 
 std::unique_ptr<Segmenter> make_learned_segmenter(PersonNetwork network, PersonDetector detector,
-                                                  const CleanUpOptions& clean_up) {
-  return std::make_unique<LearnedSegmenter>(std::move(network), std::move(detector), clean_up);
+                                                  const CleanUpOptions& clean_up,
+                                                  const std::optional<BackgroundSamples>& samples) {
+  auto segmenter = std::make_unique<LearnedSegmenter>(std::move(network), std::move(detector), clean_up);
+  if (samples) segmenter->learn(*samples);
+  return segmenter;
 }
 
 }  // namespace silpose

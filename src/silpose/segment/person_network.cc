@@ -62,8 +62,8 @@ PictureSquare PersonReading::next_square() const {
   return square_around(middle.x, middle.y, above.x, above.y);
 }
 
-Mask PersonReading::mask_in_picture(int width, int height) const {
-  return positive_in_picture(mask_logits, kReadSize, square, width, height);
+Image<float> PersonReading::logits_in_picture(int width, int height) const {
+  return values_in_picture(mask_logits, kReadSize, square, width, height, -10);
 }
 
 Result<PersonNetwork> PersonNetwork::load(const std::filesystem::path& folder) {

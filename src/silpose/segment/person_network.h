@@ -32,7 +32,8 @@ struct PersonReading {
 
   // Where to look for the same person again.
   [[nodiscard]] PictureSquare next_square() const;
-  [[nodiscard]] Mask mask_in_picture(int width, int height) const;
+  // [height, width]; far below 0 outside of the square.
+  [[nodiscard]] Image<float> logits_in_picture(int width, int height) const;
 };
 
 class PersonNetwork {

@@ -84,28 +84,22 @@ std::vector<float> sample_square(const ByteImage& image, const PictureSquare& sq
   return values;
 }
 
-Mask positive_in_picture(const std::vector<float>& values, int size, const PictureSquare& square, int width,
-                         int height) {
-  check(values.size() == static_cast<size_t>(size) * static_cast<size_t>(size), "positive_in_picture: {} values",
+Image<float> values_in_picture(const std::vector<float>& values, int size, const PictureSquare& square, int width,
+                               int height, float elsewhere) {
+  check(values.size() == static_cast<size_t>(size) * static_cast<size_t>(size), "values_in_picture: {} values",
         values.size());
-  Mask mask(width, height);
+  Image<float> picture(width, height, 1, elsewhere);
   const cv::Rect box = box_around(square, width, height);
-  if (box.empty()) return mask;
+  if (box.empty()) return picture;
   const double grow = size / square.side, middle = 0.5 * size - 0.5;
   const double c = grow * std::cos(square.turn_rad), s = grow * std::sin(square.turn_rad);
   const double dx = box.x + 0.5 - square.x, dy = box.y + 0.5 - square.y;
   const cv::Matx23d square_from_picture(c, s, middle + c * dx + s * dy, -s, c, middle - s * dx + c * dy);
   const cv::Mat from(size, size, CV_32F, const_cast<float*>(values.data()));
-  cv::Mat found;
-  cv::warpAffine(from, found, square_from_picture, box.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
-                 cv::BORDER_CONSTANT, cv::Scalar(-10));
-  for (int y = 0; y < box.height; ++y) {
-    const float* row = found.ptr<float>(y);
-    for (int x = 0; x < box.width; ++x) {
-      if (row[x] > 0) mask.set(box.x + x, box.y + y);
-    }
-  }
-  return mask;
+  cv::Mat to = cv::Mat(height, width, CV_32F, picture.pixels().data())(box);
+  cv::warpAffine(from, to, square_from_picture, box.size(), cv::INTER_LINEAR | cv::WARP_INVERSE_MAP,
+                 cv::BORDER_CONSTANT, cv::Scalar(elsewhere));
+  return picture;
 }
 
 }  // namespace silpose

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "silpose/image/image.h"
-#include "silpose/image/mask.h"
 
 namespace silpose {
 
@@ -27,8 +26,8 @@ PictureSquare square_around(double x, double y, double up_x, double up_y);
 // of the picture. REQUIRES: a positive side.
 std::vector<float> sample_square(const ByteImage& image, const PictureSquare& square, int size);
 
-// Where `values` [size, size] of the square, interpolated, are above 0, in a picture of width x height.
-Mask positive_in_picture(const std::vector<float>& values, int size, const PictureSquare& square, int width,
-                         int height);
+// `values` [size, size] of the square, interpolated, in a picture of width x height; `elsewhere` outside of the square.
+Image<float> values_in_picture(const std::vector<float>& values, int size, const PictureSquare& square, int width,
+                               int height, float elsewhere);
 
 }  // namespace silpose

@@ -77,7 +77,7 @@ TEST(SampleSquare, DoesNotAlias) {
 }
 
 // A disc drawn in the square is found where it lies in the picture, its edge finer than the square's pixels.
-TEST(PositiveInPicture, PutsADiscBackInItsPlace) {
+TEST(ValuesInPicture, PutsADiscBackInItsPlace) {
   constexpr int kSize = 64;
   const PictureSquare square{200, 150, 320, 0.4};
   const auto middle = square.in_picture(0.7, 0.4);
@@ -87,15 +87,16 @@ TEST(PositiveInPicture, PutsADiscBackInItsPlace) {
       values.push_back(static_cast<float>(8 - std::hypot(x + 0.5 - 0.7 * kSize, y + 0.5 - 0.4 * kSize)));
     }
   }
-  const Mask mask = positive_in_picture(values, kSize, square, 400, 300);
-  Mask disc(400, 300);
+  const Image<float> found = values_in_picture(values, kSize, square, 400, 300, -10);
+  Mask mask(400, 300), disc(400, 300);
   for (int y = 0; y < 300; ++y) {
     for (int x = 0; x < 400; ++x) {
+      if (found.at(x, y) > 0) mask.set(x, y);
       if (std::hypot(x + 0.5 - middle[0], y + 0.5 - middle[1]) < 40) disc.set(x, y);
     }
   }
   EXPECT_GT(intersection_over_union(mask, disc), 0.985);
-  EXPECT_EQ(positive_in_picture(values, kSize, {-900, 0, 320, 0}, 400, 300).count(), 0);
+  EXPECT_EQ(values_in_picture(values, kSize, {-900, 0, 320, 0}, 400, 300, -10), Image<float>(400, 300, 1, -10));
 }
 
 }  // namespace

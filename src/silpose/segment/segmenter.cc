@@ -162,14 +162,18 @@ Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, con
   return make_background_segmenter(std::move(*model), std::move(made));
 }
 
-Result<std::unique_ptr<Segmenter>> make_learned(const std::string& input, const SegmenterOptions& options) {
-  const Result<Video> video = open_input(input, options);
+Result<std::unique_ptr<Segmenter>> make_learned(const std::string& input, const SegmenterOptions& options,
+                                                ProgressSink* progress) {
+  Result<Video> video = open_input(input, options);
   if (!video) return video.failure();
   Result<PersonNetwork> network = PersonNetwork::load(options.networks);
   if (!network) return network.failure();
   Result<PersonDetector> detector = PersonDetector::load(options.networks);
   if (!detector) return detector.failure();
-  return make_learned_segmenter(std::move(*network), std::move(*detector), options.clean_up);
+  if (video->is_live()) return make_learned_segmenter(std::move(*network), std::move(*detector), options.clean_up);
+  Result<BackgroundSamples> samples = sample_background(*video, {}, progress);
+  if (!samples) return samples.failure();
+  return make_learned_segmenter(std::move(*network), std::move(*detector), options.clean_up, *samples);
 }
 
 Result<std::unique_ptr<Segmenter>> make_chroma(const std::string& input, const SegmenterOptions& options,
@@ -214,7 +218,7 @@ Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, cons
   options.clean_up.check();
   const std::string kind = chosen_kind(options);
   if (kind == "masks") return make_masks(input, options);
-  if (kind == "learned") return make_learned(input, options);
+  if (kind == "learned") return make_learned(input, options, progress);
   if (kind == "background") return make_background(input, options, progress);
   if (kind == "chroma") return make_chroma(input, options, progress);
   if (kind == "depth") return make_depth(input, options, progress);

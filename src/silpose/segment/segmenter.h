@@ -21,6 +21,7 @@ namespace silpose {
 
 struct Segmentation {
   Mask mask;                    // [H, W] the chosen blob
+  ByteImage confidence = {};    // [H, W] of each pixel, 255: sure; empty: sure everywhere
   double trust = 1;             // 0: nothing to go by; 1: as good as a given mask
   bool nothing_found = false;   // no blob counts
   bool touches_border = false;  // part of the subject may be outside the picture

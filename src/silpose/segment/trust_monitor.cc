@@ -19,7 +19,7 @@ int64_t median(std::vector<int64_t> values) {
 
 }  // namespace
 
-Segmentation TrustMonitor::judge(Mask mask) {
+Segmentation TrustMonitor::judge(Mask mask, ByteImage confidence) {
   Segmentation result;
   const int64_t area = mask.count();
   const Box box = mask.bounding_box();
@@ -39,6 +39,7 @@ Segmentation TrustMonitor::judge(Mask mask) {
   if (result.touches_border) result.trust *= kTrustAtBorder;
   if (result.area_jumped) result.trust *= kTrustAfterJump;
   result.mask = std::move(mask);
+  result.confidence = std::move(confidence);
   return result;
 }
 

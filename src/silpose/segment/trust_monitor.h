@@ -12,7 +12,7 @@ namespace silpose {
 class TrustMonitor {
  public:
   // Judges the masks of a video in their order.
-  Segmentation judge(Mask mask);
+  Segmentation judge(Mask mask, ByteImage confidence = {});
 
  private:
   std::deque<int64_t> recent_areas_;

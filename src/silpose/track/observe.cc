@@ -15,6 +15,7 @@ Observation observation_from(Segmentation segmentation) {
                        .touches_border = segmentation.touches_border,
                        .area_jumped = segmentation.area_jumped};
   observation.mask = std::move(segmentation.mask);
+  observation.confidence = std::move(segmentation.confidence);
   return observation;
 }
 
