@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "silpose/image/mask.h"
+
 namespace silpose {
 namespace {
 
