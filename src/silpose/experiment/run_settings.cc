@@ -23,6 +23,7 @@ std::string settings_text(const RunSettings& settings) {
   json["distance_m"] = settings.distance_m;
   json["mask_noise"] = settings.mask_noise;
   json["mask_iou"] = settings.mask_iou;
+  if (settings.faults_known) json["faults_known"] = true;  // results from before there was a choice stay good
   json["preset"] = settings.preset;
   json["smooth"] = optional(settings.smooth);
   json["hypotheses"] = optional(settings.hypotheses);

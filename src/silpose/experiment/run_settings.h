@@ -24,6 +24,8 @@ struct RunSettings {
   // The masks.
   std::string mask_noise = "none";  // synth/degraded_mask.h: none, shadow, edge, limb, hole
   double mask_iou = 0.9;            // of edge: with the true masks, on average
+  bool faults_known = false;        // pixels that are wrong, and those beside them, are marked as unsure: the most that
+                                    // a segmenter's confidence could give
   // The tracker.
   std::string preset = "default";
   std::optional<bool> smooth;

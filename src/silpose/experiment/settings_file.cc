@@ -45,6 +45,7 @@ const std::map<std::string, Setter, std::less<>>& setters() {
          return take(word_of(e, {"none", "shadow", "edge", "limb", "hole"}), run.mask_noise);
        }},
       {"mask_iou", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.05, 0.999), run.mask_iou); }},
+      {"faults_known", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.faults_known); }},
       {"preset",
        [](const TomlEntry& e, RunSettings& run) {
          return take(word_of(e, {"default", "accurate", "thesis"}), run.preset);

@@ -119,6 +119,24 @@ Observation observation_of(Mask mask) {
   return observation;
 }
 
+// Sure everywhere but where a mask is wrong, and within 2 pixels of that.
+ByteImage confidence_of_faults(const Mask& mask, const Mask& truth) {
+  constexpr int kReach = 2;
+  constexpr uint8_t kUnsure = 50;
+  ByteImage confidence(mask.width(), mask.height(), 1, 255);
+  for (int y = 0; y < mask.height(); ++y) {
+    for (int x = 0; x < mask.width(); ++x) {
+      if (mask.get(x, y) == truth.get(x, y)) continue;
+      for (int v = std::max(y - kReach, 0); v <= std::min(y + kReach, mask.height() - 1); ++v) {
+        for (int u = std::max(x - kReach, 0); u <= std::min(x + kReach, mask.width() - 1); ++u) {
+          confidence.at(u, v) = kUnsure;
+        }
+      }
+    }
+  }
+  return confidence;
+}
+
 double mean_overlap(const SyntheticSequence& sequence, const std::vector<ClipInstant>& instants) {
   std::vector<double> overlap(instants.size());
   parallel_for(instants.size(), 1, [&](size_t begin, size_t end) {
@@ -175,7 +193,12 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
     Result<std::vector<Mask>> masks = masks_of(seen.sequence, static_cast<int>(c), settings, seed);
     if (!masks) return masks.failure();
     for (size_t t = 0; t < masks->size(); ++t) {
-      seen.instants[t].observations.push_back(observation_of(std::move((*masks)[t])));
+      Observation observation = observation_of(std::move((*masks)[t]));
+      if (settings.faults_known && settings.mask_noise != "none") {
+        const Mask truth = true_mask(seen.sequence, static_cast<int>(c), static_cast<int>(t));
+        observation.confidence = confidence_of_faults(observation.mask, truth);
+      }
+      seen.instants[t].observations.push_back(std::move(observation));
     }
   }
   if (settings.mask_noise != "none") seen.mask_iou = mean_overlap(seen.sequence, seen.instants);
