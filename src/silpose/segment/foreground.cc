@@ -17,7 +17,7 @@ constexpr int kBlock = 16;  // pixels
 constexpr float kThreshold = 22;
 // Evidence of one pixel is bounded, so that neighbours can outvote it.
 constexpr float kMaxAgainst = 4, kMaxFor = 6;
-// Shadows darken to half at most: the deviation of the factor. Light thrown back brightens far less.
+// Shadows darken to a third at most: the deviation of the factor. Light thrown back brightens far less.
 constexpr float kShadowDeviation = 0.15f, kGlowDeviation = 0.04f;
 // A shadow keeps the background's texture: windows in which the luma is compared, and the weight of what is left over,
 // in noise variances.
