@@ -2,7 +2,7 @@
 source "$(dirname "$0")/checks.sh"
 
 "$silpose" experiment --list >list.txt
-for name in human-synthetic human-motion human-start human-robust human-cameras human-cost; do
+for name in human-synthetic human-motion human-start human-robust human-faults human-cameras human-cost; do
   grep -q "^$name " list.txt || fail "--list does not tell $name: $(cat list.txt)"
 done
 
