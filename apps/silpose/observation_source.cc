@@ -160,9 +160,10 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
         fmt::format("{}: carries no frame rate, {} a second assumed", opened.name(), opened.fps()));
   }
   // A quarter of a frame's time makes up for rounded time stamps.
-  source.first_frame_ = static_cast<int64_t>(std::ceil(options.start_s.value_or(0) * opened.fps() - 0.25));
-  source.last_frame_ = options.end_s ? static_cast<int64_t>(std::floor(*options.end_s * opened.fps() + 0.25))
-                                     : std::numeric_limits<int64_t>::max();
+  const double margin_s = 0.25 / opened.fps();
+  source.start_ns_ = std::llround((options.start_s.value_or(0) - margin_s) * 1e9);
+  source.end_ns_ =
+      options.end_s ? std::llround((*options.end_s + margin_s) * 1e9) : std::numeric_limits<int64_t>::max();
 
   const Stopwatch learning;
   const auto count = static_cast<size_t>(opened.num_cameras());
@@ -187,20 +188,14 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
   return source;
 }
 
-int64_t ObservationSource::first_index() const {
-  int64_t first = first_frame_;
-  for (const auto& segmenter : segmenters_) first = std::max(first, segmenter->first_index());
-  return first;
-}
-
 Result<std::optional<Instant>> ObservationSource::next() {
   const Stopwatch decoding;
   double segment_s = 0;
   for (;;) {
     Result<std::optional<Frame>> frame = video_->next();
     if (!frame) return frame.failure();
-    if (!frame->has_value() || (*frame)->index > last_frame_) return std::optional<Instant>();
-    bool wanted = (*frame)->index >= first_frame_;
+    if (!frame->has_value() || (*frame)->time_ns > end_ns_) return std::optional<Instant>();
+    bool wanted = (*frame)->time_ns >= start_ns_;
     for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
       wanted = wanted && video_->own_index(static_cast<int>(camera)) >= segmenters_[camera]->first_index();
     }
@@ -235,9 +230,13 @@ std::vector<PictureSize> ObservationSource::sizes() const {
 
 int64_t ObservationSource::num_expected() const {
   if (video_->num_frames_hint() <= 0) return 0;
+  // As if the rate were constant.
+  const auto frame_at = [&](int64_t time_ns) { return static_cast<double>(time_ns) * 1e-9 * video_->fps(); };
   const int64_t before = video_->first_index();
-  const int64_t end = std::min(before + video_->num_frames_hint() - 1, last_frame_) + 1;
-  return std::max<int64_t>(0, end - std::max(before, first_index()));
+  const auto end = std::min(static_cast<double>(before + video_->num_frames_hint() - 1), frame_at(end_ns_)) + 1;
+  auto first = std::max(static_cast<double>(before), std::ceil(frame_at(start_ns_)));
+  for (const auto& segmenter : segmenters_) first = std::max(first, static_cast<double>(segmenter->first_index()));
+  return std::max<int64_t>(0, static_cast<int64_t>(end - first));
 }
 
 std::string ObservationSource::background() const {
@@ -254,7 +253,8 @@ std::vector<std::string> ObservationSource::warnings() const {
     const std::vector<std::string> own = segmenter->warnings();
     all.insert(all.end(), own.begin(), own.end());
   }
-  if (video_->truncated()) all.push_back(fmt::format("{}: breaks off before its end", video_->name()));
+  const std::vector<std::string> of_video = video_->warnings();
+  all.insert(all.end(), of_video.begin(), of_video.end());
   return all;
 }
 

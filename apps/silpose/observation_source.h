@@ -61,13 +61,12 @@ class ObservationSource {
 
  private:
   ObservationSource() = default;
-  [[nodiscard]] int64_t first_index() const;
   InputOptions options_;
   std::unique_ptr<Video> video_;
   std::vector<std::unique_ptr<Segmenter>> segmenters_;
   std::vector<std::string> warnings_;
   double learning_s_ = 0;
-  int64_t first_frame_ = 0, last_frame_ = 0;  // of the stretch that --start and --end choose
+  int64_t start_ns_ = 0, end_ns_ = 0;  // of the stretch that --start and --end choose
 };
 
 }  // namespace silpose::app

@@ -104,7 +104,7 @@ class TrackRun {
       const StepReport report = tracker->step(now.observations, now.frame.index, now.frame.time_ns);
       const Stopwatch writing;
       if (Result<void> recorded = record(report); !recorded) return recorded;
-      Result<void> drawn = writer_.add_picture(std::move(now.frame.images[0]), report.pose);
+      Result<void> drawn = writer_.add_picture(std::move(now.frame.images[0]), report.time_ns, report.pose);
       if (!drawn) return drawn;
       tracked_.seconds.write += writing.seconds();
     }
@@ -160,7 +160,7 @@ class TrackRun {
       if (!frame->has_value()) return error("{}: ended earlier when it was read again", video->name());
       const StepReport& report = reports[static_cast<size_t>(drawn)];
       if ((*frame)->index < report.frame_idx) continue;
-      Result<void> added = writer_.add_picture(std::move((*frame)->images[0]), report.pose);
+      Result<void> added = writer_.add_picture(std::move((*frame)->images[0]), report.time_ns, report.pose);
       if (!added) return added;
       ++drawn;
     }

@@ -37,7 +37,7 @@ Result<void> TrackWriter::add_masks(const Frame& frame, std::span<const Observat
   return {};
 }
 
-Result<void> TrackWriter::add_picture(ByteImage picture, std::span<const double> pose) {
+Result<void> TrackWriter::add_picture(ByteImage picture, int64_t time_ns, std::span<const double> pose) {
   const PinholeCamera& camera = cameras_[0];
   if (draws_floor_) {
     Mask subject;
@@ -55,7 +55,7 @@ Result<void> TrackWriter::add_picture(ByteImage picture, std::span<const double>
     if (!created) return created.failure();
     overlay_.emplace(std::move(*created));
   }
-  return overlay_->write(picture);
+  return overlay_->write(picture, time_ns);
 }
 
 void TrackWriter::set_fitted_body(std::shared_ptr<const BodyModel> body) {
@@ -64,7 +64,9 @@ void TrackWriter::set_fitted_body(std::shared_ptr<const BodyModel> body) {
 }
 
 Result<void> TrackWriter::finish(const TrackRecording& recording) {
-  if (overlay_) overlay_->close();
+  if (overlay_) {
+    if (const Result<void> closed = overlay_->close(); !closed) return closed;
+  }
   const Result<void> kept = write_cameras(directory_ / "camera.toml", cameras_);
   if (!kept || recording.steps.empty()) return kept;
   if (is_fitted_) {
@@ -79,7 +81,8 @@ Result<void> TrackWriter::finish(const TrackRecording& recording) {
                   PoseUnits::kNormalised),
       write_poses(directory_ / "spread.csv", skeleton, spread_table(recording)),
       write_joints(directory_ / "joints.csv", joint_table(recording, *body_, cameras_[0])),
-      write_bvh(directory_ / "motion.bvh", clip_from_poses(skeleton, even_poses(recording), fps_, body_->end_points)),
+      write_bvh(directory_ / "motion.bvh",
+                clip_from_poses(skeleton, even_poses(recording, skeleton, fps_), fps_, body_->end_points)),
       write_glb(directory_ / "motion.glb", *body_, poses),
       write_trc(directory_ / "markers.trc", marker_table(recording, *body_), fps_),
       has_opensim_coordinates(skeleton) ? write_mot(directory_ / "motion.mot", skeleton, poses) : Result<void>(),

@@ -25,15 +25,15 @@ inline constexpr const char* kFittedBodyFile = "fitted.body";
 class TrackWriter {
  public:
   TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
-              std::vector<PinholeCamera> cameras, double fps, bool draws_floor);
+              std::vector<PinholeCamera> cameras, double fps, bool draws_floor);  // fps: of files that want an even rate
 
   // One frame of masks/ (masks_NAME/ with several cameras), and of the examples that strips() has. Shapes: one
   // observation a camera.
   Result<void> add_masks(const Frame& frame, std::span<const Observation> observations);
 
-  // The next picture of overlay.mp4, of the first camera, with `pose` [D] drawn on it; empty: nothing is. The
-  // floor round the subject, and its footprints, are drawn too where the writer was asked to.
-  Result<void> add_picture(ByteImage picture, std::span<const double> pose);
+  // The next picture of overlay.mp4, of the first camera at its time, with `pose` [D] drawn on it; empty:
+  // nothing is. The floor round the subject, and its footprints, are drawn too where the writer was asked to.
+  Result<void> add_picture(ByteImage picture, int64_t time_ns, std::span<const double> pose);
 
   // What is written is of this body from now on; finish() writes it, too, as kFittedBodyFile.
   void set_fitted_body(std::shared_ptr<const BodyModel> body);

@@ -1,6 +1,5 @@
 // FrameSource: where one camera's pictures come from: a video file, a list of picture files, a live camera. What Video
 // is made of; not for use elsewhere.
-// Based on: OpenCV's videoio over FFmpeg.
 // Threads: one thread per source.
 #pragma once
 
@@ -9,24 +8,36 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
 
 namespace silpose {
 
+struct Picture {
+  ByteImage image;                 // [H, W, 3]
+  std::optional<int64_t> time_ns;  // since the first picture; nothing where the input does not say
+};
+
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  [[nodiscard]] virtual double fps() const { return 0; }               // 0: carries no rate
+  // Known once the first picture has been read.
+  [[nodiscard]] virtual double fps() const { return 0; }  // 0: carries no rate
+  [[nodiscard]] virtual bool has_times() const { return false; }
   [[nodiscard]] virtual int64_t num_frames_hint() const { return 0; }  // 0: unknown
   [[nodiscard]] virtual bool is_live() const { return false; }
   // Of its pictures, growing; empty: they are counted from 0.
   [[nodiscard]] virtual std::span<const int64_t> numbers() const { return {}; }
 
-  // [H, W, 3] The next picture, nothing at the end.
-  virtual Result<std::optional<ByteImage>> next() = 0;
+  // The next picture, nothing at the end.
+  virtual Result<std::optional<Picture>> next() = 0;
+  // At the end: it came before the input said it would.
+  [[nodiscard]] virtual bool broke_off() const { return false; }
+  // What the user should know of the pictures read so far, one line each.
+  [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 
   // Back to the first picture.
   virtual Result<void> rewind() = 0;
@@ -34,8 +45,5 @@ class FrameSource {
 
 // Errors: missing, empty, not a video, no picture in it, a gap in a numbered sequence.
 Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& input);
-
-// Keeps FFmpeg and OpenCV from printing; for all threads, from the first call on.
-void silence_codecs();
 
 }  // namespace silpose

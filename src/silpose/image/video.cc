@@ -14,32 +14,79 @@ struct Video::Impl {
   struct Camera {
     std::string input;
     std::unique_ptr<FrameSource> source;
-    std::optional<ByteImage> first;  // read ahead, to know the size and that there is a picture at all
+    std::optional<Picture> picture;  // the next one, where it is read already: to know its size and its time
     int width = 0, height = 0;
+    int64_t num_read = 0;
+
+    // Reads the next picture. False: there is none.
+    Result<bool> read() {
+      Result<std::optional<Picture>> next = source->next();
+      if (!next) return next.failure();
+      picture = std::move(*next);
+      num_read += picture ? 1 : 0;
+      return picture.has_value();
+    }
   };
   std::vector<Camera> cameras;
   std::string name;
   double fps = 0;
   bool fps_assumed = false, live = false, ended = false, truncated = false;
-  int64_t hint = 0, num_read = 0;
+  int64_t hint = 0, num_given = 0, last_ns = 0, num_mistimed = 0;
   std::vector<int64_t> numbers;  // of the frames; empty: counted from 0
   Stopwatch since_start;         // the time of live pictures
 
   static Result<Camera> open_camera(const std::string& input) {
     auto source = open_frame_source(input);
     if (!source) return source.failure();
-    Camera camera{.input = input, .source = std::move(*source), .first = {}};
-    Result<std::optional<ByteImage>> first = camera.source->next();
+    Camera camera{.input = input, .source = std::move(*source), .picture = {}};
+    const Result<bool> first = camera.read();
     if (!first) return first.failure();
-    if (!first->has_value()) return error("{}: not a video, or no frame in it can be decoded", input);
-    camera.first = std::move(*first);
-    camera.width = camera.first->width();
-    camera.height = camera.first->height();
+    if (!*first) return error("{}: not a video, or no frame in it can be decoded", input);
+    camera.width = camera.picture->image.width();
+    camera.height = camera.picture->image.height();
     return camera;
   }
 
-  // A container's count may be off by a frame or so (edit lists, a duration that is rounded).
-  [[nodiscard]] bool ends_early() const { return hint - num_read > std::max<int64_t>(2, hint / 100); }
+  // Reads what belongs together: cameras whose picture is older than another's go on to their next, so that a picture
+  // that one of them dropped is left out for all. False: one of them has ended.
+  Result<bool> read_instant() {
+    for (Camera& camera : cameras) {
+      if (camera.picture) continue;
+      const Result<bool> read = camera.read();
+      if (!read || !*read) return end_with(camera, read);
+    }
+    const auto half_interval = static_cast<int64_t>(0.5e9 / fps);
+    for (size_t i = 0; i < cameras.size();) {
+      Camera& camera = cameras[i++];
+      const auto is_after = [&](const Camera& other) {
+        return other.picture->time_ns && camera.picture->time_ns &&
+               *other.picture->time_ns - *camera.picture->time_ns > half_interval;
+      };
+      if (std::ranges::none_of(cameras, is_after)) continue;
+      const Result<bool> read = camera.read();
+      if (!read || !*read) return end_with(camera, read);
+      i = 0;
+    }
+    return true;
+  }
+  Result<bool> end_with(const Camera& camera, const Result<bool>& read) {
+    ended = true;
+    truncated = camera.source->broke_off();
+    return read;
+  }
+
+  // The picture's own time, or where it has none, or one that does not grow, one frame's after the last.
+  int64_t time_of(const Camera& camera, int64_t index) {
+    if (live) {
+      if (num_given == 0) since_start.restart();
+      return num_given == 0 ? 0 : std::llround(since_start.seconds() * 1e9);
+    }
+    if (!camera.source->has_times()) return std::llround(static_cast<double>(index) * 1e9 / fps);
+    const std::optional<int64_t> own = camera.picture->time_ns;
+    if (own && (num_given == 0 || *own > last_ns)) return *own;
+    ++num_mistimed;
+    return last_ns + std::llround(1e9 / fps);
+  }
 
   // Numbers that all cameras' pictures share, as far as the shortest goes.
   void take_numbers() {
@@ -70,50 +117,58 @@ bool Video::is_live() const { return impl_->live; }
 int64_t Video::num_frames_hint() const { return impl_->hint; }
 int64_t Video::first_index() const { return impl_->index_of(0); }
 int64_t Video::own_index(int camera) const {
-  const std::span<const int64_t> numbers = impl_->cameras.at(static_cast<size_t>(camera)).source->numbers();
-  const int64_t ordinal = std::max<int64_t>(0, impl_->num_read - 1);
+  const Impl::Camera& asked = impl_->cameras.at(static_cast<size_t>(camera));
+  const std::span<const int64_t> numbers = asked.source->numbers();
+  const int64_t ordinal = std::max<int64_t>(0, asked.num_read - 1);
   return numbers.empty() ? ordinal : numbers[static_cast<size_t>(ordinal)];
 }
 const std::string& Video::name() const { return impl_->name; }
 bool Video::truncated() const { return impl_->truncated; }
 
+std::vector<std::string> Video::warnings() const {
+  std::vector<std::string> all;
+  for (const Impl::Camera& camera : impl_->cameras) {
+    const std::vector<std::string> own = camera.source->warnings();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  if (100 * impl_->num_mistimed > impl_->num_given) {
+    all.push_back(
+        fmt::format("{}: {} of its {} frames carry no time, or none after the frame before; put {:.4f} s after it",
+                    name(), impl_->num_mistimed, impl_->num_given, 1 / fps()));
+  }
+  if (impl_->truncated) all.push_back(fmt::format("{}: breaks off before its end", name()));
+  return all;
+}
+
 Result<std::optional<Frame>> Video::next() {
   Impl& impl = *impl_;
   if (impl.ended) return std::optional<Frame>();
-  Frame frame{.index = impl.index_of(impl.num_read), .time_ns = 0, .images = {}};
-  if (impl.live) {
-    if (impl.num_read == 0) impl.since_start.restart();
-    frame.time_ns = impl.num_read == 0 ? 0 : std::llround(impl.since_start.seconds() * 1e9);
-  } else {
-    frame.time_ns = std::llround(static_cast<double>(frame.index) * 1e9 / impl.fps);
-  }
+  const Result<bool> read = impl.read_instant();
+  if (!read) return read.failure();
+  if (!*read) return std::optional<Frame>();
+  const int64_t index = impl.index_of(impl.cameras[0].num_read - 1);
+  Frame frame{.index = index, .time_ns = impl.time_of(impl.cameras[0], index), .images = {}};
   for (Impl::Camera& camera : impl.cameras) {
-    Result<std::optional<ByteImage>> image = std::move(camera.first);
-    camera.first.reset();
-    if (!image->has_value()) image = camera.source->next();
-    if (!image) return image.failure();
-    if (!image->has_value()) {  // several cameras end with the first that ends
-      impl.ended = true;
-      impl.truncated = impl.ends_early();
-      return std::optional<Frame>();
+    ByteImage& image = camera.picture->image;
+    if (image.width() != camera.width || image.height() != camera.height) {
+      return error("{}: frame {} is {}x{}, those before it {}x{}", camera.input, frame.index, image.width(),
+                   image.height(), camera.width, camera.height);
     }
-    ByteImage& picture = **image;
-    if (picture.width() != camera.width || picture.height() != camera.height) {
-      return error("{}: frame {} is {}x{}, those before it {}x{}", camera.input, frame.index, picture.width(),
-                   picture.height(), camera.width, camera.height);
-    }
-    frame.images.push_back(std::move(picture));
+    frame.images.push_back(std::move(image));
+    camera.picture.reset();
   }
-  ++impl.num_read;
+  impl.last_ns = frame.time_ns;
+  ++impl.num_given;
   return std::optional<Frame>(std::move(frame));
 }
 
 Result<void> Video::rewind() {
   for (Impl::Camera& camera : impl_->cameras) {
-    camera.first.reset();
+    camera.picture.reset();
+    camera.num_read = 0;
     if (Result<void> rewound = camera.source->rewind(); !rewound) return rewound;
   }
-  impl_->num_read = 0;
+  impl_->num_given = impl_->last_ns = impl_->num_mistimed = 0;
   impl_->ended = impl_->truncated = false;
   return {};
 }
@@ -126,7 +181,7 @@ Result<Video> open_video(const std::vector<std::string>& inputs, const VideoOpti
     auto camera = Video::Impl::open_camera(input);
     if (!camera) return camera.failure();
     const double rate = camera->source->fps();
-    if (rate > 0 && impl->fps > 0 && std::abs(rate - impl->fps) > 0.01 * impl->fps) {
+    if (rate > 0 && impl->fps > 0 && std::abs(rate - impl->fps) > 0.1 * impl->fps) {
       return error("{}: {:.3f} frames a second, the inputs before it {:.3f}", input, rate, impl->fps);
     }
     if (impl->fps == 0) impl->fps = rate;

@@ -1,5 +1,5 @@
 // Video in and out: a file, a directory of pictures, a printf pattern or a camera, read as Frames; H.264 written.
-// Built on OpenCV's videoio over FFmpeg.
+// Based on: FFmpeg for files, OpenCV's videoio for live cameras.
 // Threads: one thread per Video or VideoWriter.
 #pragma once
 
@@ -31,6 +31,7 @@ class Video {
   [[nodiscard]] int num_cameras() const;
   [[nodiscard]] int width(int camera = 0) const;
   [[nodiscard]] int height(int camera = 0) const;
+  // The nominal rate; of a clip of variable rate its mean. Where frames lie in time is theirs to say.
   [[nodiscard]] double fps() const;
   [[nodiscard]] bool fps_assumed() const;  // the input carries no rate
   [[nodiscard]] bool is_live() const;      // a camera: cannot rewind
@@ -38,7 +39,8 @@ class Video {
   [[nodiscard]] int64_t num_frames_hint() const;
   // Of the first frame: 0, or the number of the first of numbered pictures.
   [[nodiscard]] int64_t first_index() const;
-  // Of a camera's picture in the last frame, had the camera been opened alone: Frame::index unless numbers differ.
+  // Of a camera's picture in the last frame, had the camera been opened alone: Frame::index unless numbers differ, or
+  // one of them dropped a picture.
   [[nodiscard]] int64_t own_index(int camera) const;
   [[nodiscard]] const std::string& name() const;
 
@@ -46,6 +48,9 @@ class Video {
   // off before the frames its container promises is the end, and truncated() says so.
   Result<std::optional<Frame>> next();
   [[nodiscard]] bool truncated() const;
+  // What the user should know of this input as far as it was read (made square, interlaced, breaks off, ...), one line
+  // each.
+  [[nodiscard]] std::vector<std::string> warnings() const;
 
   // Back to the first frame. Errors: a live camera; the input vanished.
   Result<void> rewind();
@@ -77,25 +82,29 @@ class Video {
 };
 
 // Opens a file, a directory of pictures, a printf pattern ("img-%06d.png") or "camera:N".
+// A file's frames are as a player shows them: turned upright, of square pixels, each at the time its container says,
+// counted from the first one's; where it says none, index / fps. Several cameras' frames go together by their times.
 // Pictures whose names are one text and a number up to 99,999,999 each (000030.png, walk-7.png) come in the order of
 // their numbers, which are the indices of their frames; gaps stay gaps, in time too. Other pictures come in the order
 // of their names, counted from 0. So do those of several inputs whose numbers differ.
 // Errors: missing, empty, not a video, no frame in it, a number that is there twice; several inputs whose rates differ
-// by more than 1 %.
+// by more than 10 %.
 Result<Video> open_video(const std::vector<std::string>& inputs, const VideoOptions& options = {});
 Result<Video> open_video(const std::string& input, const VideoOptions& options = {});
 
-// Writes H.264 in MP4 (yuv420p; odd sizes are padded by one row or column). Move-only; close() or the destructor ends
-// the file.
+// Writes H.264 in MP4 (yuv420p; odd sizes are padded by one row or column). Move-only; a file that is not closed has no
+// end and cannot be read.
 class VideoWriter {
  public:
   VideoWriter(VideoWriter&&) noexcept;
   VideoWriter& operator=(VideoWriter&&) noexcept;
   ~VideoWriter();
 
-  // Errors: size other than the first picture's; the encoder refuses.
-  Result<void> write(const ByteImage& image);
-  void close();
+  // At `time_ns`, in the first picture's own time, or one frame's time after the last. Errors: size other than the
+  // first picture's; the encoder refuses; not writable. REQUIRES: times that grow.
+  Result<void> write(const ByteImage& image, std::optional<int64_t> time_ns = {});
+  // Errors: not writable (disk full). Nothing to do the second time.
+  Result<void> close();
 
  private:
   friend Result<VideoWriter> create_video(const std::filesystem::path&, int, int, double);
@@ -104,7 +113,7 @@ class VideoWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-// Errors: not writable; no H.264 encoder.
+// `fps`: nominal, where pictures have times of their own. Errors: not writable; no H.264 encoder.
 Result<VideoWriter> create_video(const std::filesystem::path& path, int width, int height, double fps);
 
 }  // namespace silpose

@@ -41,6 +41,7 @@ class VideoTest : public testing::Test {
                                        int height = 48) const {
     VideoWriter writer = create_video(at(name), width, height, fps).value();
     for (int i = 0; i < frames; ++i) writer.write(picture(i % 12, width, height)).value();
+    writer.close().value();
     return at(name);
   }
 
@@ -102,7 +103,7 @@ TEST_F(VideoTest, OddSizesArePaddedByOne) {
   VideoWriter writer = create_video(at("other.mp4"), 63, 47, 30).value();
   EXPECT_THAT(writer.write(ByteImage(64, 48, 3)).error().message, HasSubstr("a picture of 64x48"));
   EXPECT_TRUE(writer.write(ByteImage(63, 47, 1)).ok());
-  writer.close();
+  ASSERT_TRUE(writer.close().ok());
   EXPECT_FALSE(writer.write(ByteImage(63, 47, 3)).ok());
 }
 
@@ -277,7 +278,7 @@ void move_index_to_front(const std::string& path) {
 TEST_F(VideoTest, CutFileEndsEarlyAndSaysSo) {
   VideoWriter writer = create_video(at("clip.mp4"), 64, 48, 30).value();
   for (int i = 0; i < 120; ++i) writer.write(picture(i * 7 % 16)).value();
-  writer.close();
+  writer.close().value();
   move_index_to_front(at("clip.mp4"));
   Video whole = open_video(at("clip.mp4")).value();
   ASSERT_EQ(count_frames(whole), 120);

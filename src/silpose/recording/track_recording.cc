@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "silpose/base/check.h"
+#include "silpose/geometry/rigid3.h"
 
 namespace silpose {
 namespace {
@@ -93,14 +94,28 @@ MarkerTable marker_table(const TrackRecording& recording, const BodyModel& body)
   return table;
 }
 
-std::vector<std::vector<double>> even_poses(const TrackRecording& recording) {
+std::vector<std::vector<double>> even_poses(const TrackRecording& recording, const Skeleton& skeleton, double fps) {
+  check(fps > 0, "even_poses: {} a second", fps);
+  constexpr int64_t kSame_ns = 10'000;
   std::vector<std::vector<double>> poses;
-  int64_t next_frame = 0;
+  const RecordedStep* before = nullptr;
+  int64_t start_ns = 0;
+  const auto next_ns = [&] { return start_ns + std::llround(static_cast<double>(poses.size()) * 1e9 / fps); };
   for (const RecordedStep& step : recording.steps) {
     if (step.pose.empty()) continue;
-    for (; !poses.empty() && next_frame < step.frame_idx; ++next_frame) poses.push_back(poses.back());
-    poses.push_back(step.pose);
-    next_frame = step.frame_idx + 1;
+    if (before == nullptr) start_ns = step.time_ns;
+    for (; next_ns() < step.time_ns - kSame_ns;) {
+      const double share =
+          static_cast<double>(next_ns() - before->time_ns) / static_cast<double>(step.time_ns - before->time_ns);
+      std::vector<double> pose = before->pose;
+      for (size_t d = 0; d < pose.size(); ++d) {
+        const double change = step.pose[d] - pose[d];
+        pose[d] += share * (skeleton.dofs()[d].is_periodic ? wrap_angle(change) : change);
+      }
+      poses.push_back(std::move(pose));
+    }
+    if (next_ns() <= step.time_ns + kSame_ns) poses.push_back(step.pose);
+    before = &step;
   }
   return poses;
 }

@@ -47,9 +47,9 @@ JointTable joint_table(const TrackRecording& recording, const BodyModel& body, c
 // silhouette: waiting, coasted.
 MarkerTable marker_table(const TrackRecording& recording, const BodyModel& body);
 
-// Poses [T][D] at an even rate, as motion files want them: one a frame from the first step that has a pose; a frame
-// without one repeats the pose before.
-std::vector<std::vector<double>> even_poses(const TrackRecording& recording);
+// Poses [T][D] at an even rate, as motion files want them, from the first step that has a pose to the last: those of
+// the steps where they lie on that grid, otherwise between the two around it in time. REQUIRES: fps > 0.
+std::vector<std::vector<double>> even_poses(const TrackRecording& recording, const Skeleton& skeleton, double fps);
 
 // Counts and means over a recording.
 struct RecordingSummary {

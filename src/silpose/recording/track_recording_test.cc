@@ -78,10 +78,25 @@ TEST(TrackRecording, MarkersAreBlankWhereNothingWasCompared) {
   EXPECT_TRUE(markers.rows[3].x_in_world[1].isApprox(Eigen::Vector3d(0, 2, 0), 1e-12));
 }
 
-TEST(TrackRecording, EvenPosesFillGaps) {
-  const TrackRecording recording{
+TEST(TrackRecording, EvenPosesLieBetweenThoseAroundThemInTime) {
+  TrackRecording recording{
       "stick", {step(1, {}, State::kWaiting), step(2, {0.5, 0}, State::kTracked), step(4, {0.7, 0}, State::kTracked)}};
-  EXPECT_EQ(even_poses(recording), (std::vector<std::vector<double>>{{0.5, 0}, {0.5, 0}, {0.7, 0}}));
+  const std::vector<std::vector<double>> even = even_poses(recording, stick().skeleton, 10);
+  ASSERT_EQ(even.size(), 3u);
+  EXPECT_EQ(even[0], (std::vector<double>{0.5, 0}));
+  EXPECT_NEAR(even[1][0], 0.6, 1e-12);
+  EXPECT_EQ(even[2], (std::vector<double>{0.7, 0}));
+
+  // Frames at 0, 30 and 100 ms, every 50 ms: half, then 2/7 of the way, then the last itself.
+  recording.steps = {step(0, {0, 0}, State::kTracked), step(1, {0.3, 0}, State::kTracked),
+                     step(2, {1, 0}, State::kTracked)};
+  recording.steps[1].time_ns = 30'000'000;
+  recording.steps[2].time_ns = 100'000'000;
+  const std::vector<std::vector<double>> uneven = even_poses(recording, stick().skeleton, 20);
+  ASSERT_EQ(uneven.size(), 3u);
+  EXPECT_NEAR(uneven[1][0], 0.5, 1e-12);
+  EXPECT_EQ(uneven[2][0], 1);
+  EXPECT_TRUE(even_poses(TrackRecording{}, stick().skeleton, 20).empty());
 }
 
 TEST(TrackRecording, SummaryCountsComparedFrames) {

@@ -24,8 +24,8 @@ struct ReportInput {
   const BodyModel* body = nullptr;
   std::optional<Eigen::Vector3d>
       viewpoint;                        // where the first camera stands, world: the skeleton is first seen from there
-  std::filesystem::path overlay_video;  // one picture a step; embedded when small, linked by its file name when not
-  double fps = 30;                      // of the overlay video
+  std::filesystem::path overlay_video;  // one picture a step, from time 0; embedded when small, else linked by its name
+  double fps = 30;                      // of the clip, where it is even
   FactLines facts;                      // the run
   FactLines mask_facts;                 // how the masks were made: the segmenter and its settings
   std::vector<std::pair<std::string, std::vector<MaskExample>>> strips;  // by camera: name, examples

@@ -143,7 +143,10 @@ Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t>
     if (!frame) return frame.failure();
     if (!frame->has_value()) break;
     if (!first_ns) first_ns = (*frame)->time_ns;  // not 0 where pictures are numbered
-    if (end_ns && (*frame)->time_ns - *first_ns >= *end_ns) break;
+    if (end_ns && (*frame)->time_ns - *first_ns >= *end_ns) {
+      samples.next_index = (*frame)->index;
+      break;
+    }
     if (done++ % stride == 0) samples.images.push_back(to_luma_chroma((*frame)->images[0]));
     if (static_cast<int64_t>(samples.images.size()) > limit) {  // longer than was told: keep every other one
       for (size_t i = 0; 2 * i < samples.images.size(); ++i) samples.images[i] = std::move(samples.images[2 * i]);

@@ -27,7 +27,8 @@ struct BackgroundModel {
 
 // Pictures spread evenly over a stretch of video, few enough to be kept in memory, as Y, Cr, Cb.
 struct BackgroundSamples {
-  std::vector<ByteImage> images;  // each [H, W, 3]
+  std::vector<ByteImage> images;      // each [H, W, 3]
+  std::optional<int64_t> next_index;  // of the first frame not before end_ns, where there is one
 };
 
 // Reads all frames, keeps some. Only frames less than end_ns after the first, when given.

@@ -149,12 +149,8 @@ Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, con
     if (video.is_live()) return error("{}: the background of a live camera is learned online", input);
     Result<BackgroundSamples> samples = sample_background(video, std::llround(seconds * 1e9), progress);
     if (!samples) return samples.failure();
-    made.first_index = video.first_index() + static_cast<int64_t>(std::ceil(seconds * video.fps() - 1e-6));
-    if (Result<std::optional<Frame>> after = video.next(); !after) {
-      return after.failure();
-    } else if (!after->has_value()) {
-      return error("{}: ends within its lead-in of {} s", input, seconds);
-    }
+    if (!samples->next_index) return error("{}: ends within its lead-in of {} s", input, seconds);
+    made.first_index = *samples->next_index;
     return make_background_segmenter(learn_background(*samples), std::move(made));
   }
   Result<BackgroundModel> model = model_from_plate(background, input, video, progress);

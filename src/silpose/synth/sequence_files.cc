@@ -139,7 +139,8 @@ Result<int> write_sequence(const std::filesystem::path& directory, const Synthet
     wanted = progress == nullptr || progress->update("frames", done, total);
   }
   for (Outputs& output : *outputs) {
-    if (output.video) output.video->close();
+    if (!output.video) continue;
+    if (const Result<void> closed = output.video->close(); !closed) return closed.failure();
   }
 
   const Skeleton& skeleton = sequence.body->skeleton;

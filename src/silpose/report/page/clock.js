@@ -24,7 +24,9 @@ function seek(step) {
   if (!count) return;
   cursor = Math.min(count - 1, Math.max(0, step));
   if (hasVideo && Number.isFinite(video.duration)) {
-    video.currentTime = Math.min((cursor + 0.5) / data.fps, video.duration);  // one picture a step
+    // One picture a step, which stays until the next one's time.
+    const until = cursor + 1 < count ? times[cursor + 1] - times[0] : video.duration;
+    video.currentTime = Math.min((times[cursor] - times[0] + until) / 2, video.duration);
   }
   if (ownStart) ownStart = {at: performance.now(), step: cursor};
   moved();
@@ -50,7 +52,9 @@ function tick() {
   if (!isPlaying) return;
   let step = cursor;
   if (hasVideo) {
-    step = Math.min(count - 1, Math.max(0, Math.floor(video.currentTime * data.fps + 1e-6)));
+    const time = times[0] + video.currentTime + 0.001;
+    step = stepAt(time);
+    if (step > 0 && times[step] > time) --step;
   } else {
     const time = times[ownStart.step] + (performance.now() - ownStart.at) / 1000 * Number(speed.value);
     if (time > times[count - 1] + 1 / data.fps) ownStart = {at: performance.now(), step: 0};

@@ -1,0 +1,38 @@
+// Owners of FFmpeg's objects, and its codes as text. For the readers and writers of video in this module alone.
+// Threads: functions without state; silence_ffmpeg() holds for all threads from the first call on.
+#pragma once
+
+#include <memory>
+#include <string>
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libswscale/swscale.h>
+}
+
+namespace silpose {
+
+struct FfmpegDelete {
+  void operator()(AVFormatContext* input) const { avformat_close_input(&input); }
+  void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
+  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+  void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
+};
+using InputHandle = std::unique_ptr<AVFormatContext, FfmpegDelete>;
+using CodecHandle = std::unique_ptr<AVCodecContext, FfmpegDelete>;
+using FrameHandle = std::unique_ptr<AVFrame, FfmpegDelete>;
+using PacketHandle = std::unique_ptr<AVPacket, FfmpegDelete>;
+using ScalerHandle = std::unique_ptr<SwsContext, FfmpegDelete>;
+
+// "No space left on device".
+std::string ffmpeg_text(int code);
+
+// A path as FFmpeg takes it, whatever colons and percent signs are in it.
+std::string ffmpeg_path(const std::string& path);
+
+// Keeps FFmpeg and its codecs from printing.
+void silence_ffmpeg();
+
+}  // namespace silpose

@@ -1,0 +1,298 @@
+#include "silpose/image/video_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <utility>
+
+#include "silpose/image/ffmpeg.h"
+#include "silpose/image/shown_picture.h"
+
+extern "C" {
+#include <libavutil/display.h>
+}
+
+namespace silpose {
+namespace {
+
+// Cut where its index should come: what ISO media (MP4, MOV) say of themselves at their beginning.
+bool starts_as_iso_media(const std::string& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string start(8, '\0');
+  stream.read(start.data(), static_cast<std::streamsize>(start.size()));
+  return stream && start.substr(4) == "ftyp";
+}
+
+double ratio_of(AVRational ratio) { return ratio.num > 0 && ratio.den > 0 ? av_q2d(ratio) : 0; }
+
+// What decoded pixels mean.
+struct PixelKind {
+  int width = 0, height = 0, format = 0;
+  AVColorSpace colour_space = AVCOL_SPC_UNSPECIFIED;
+  AVColorRange range = AVCOL_RANGE_UNSPECIFIED;
+  bool operator==(const PixelKind&) const = default;
+};
+
+class VideoFile : public FrameSource {
+ public:
+  explicit VideoFile(std::string name)
+      : name_(std::move(name)), packet_(av_packet_alloc()), decoded_(av_frame_alloc()), converted_(av_frame_alloc()) {}
+
+  Result<void> rewind() override {
+    // Opened anew: seeking is not exact in every container.
+    decoder_.reset();
+    AVFormatContext* opened = nullptr;
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "protocol_whitelist", "file", 0);
+    const int failed = avformat_open_input(&opened, ffmpeg_path(name_).c_str(), nullptr, &options);
+    av_dict_free(&options);
+    if (failed < 0) {
+      if (failed == AVERROR_INVALIDDATA && starts_as_iso_media(name_)) {
+        return error("{}: the file is cut off or damaged: its index cannot be read", name_);
+      }
+      return error("{}: not a video", name_);
+    }
+    input_.reset(opened);
+    if (const int unknown = avformat_find_stream_info(opened, nullptr); unknown < 0) {
+      return error("{}: not a video ({})", name_, ffmpeg_text(unknown));
+    }
+    const int best = av_find_best_stream(opened, AVMEDIA_TYPE_VIDEO, -1, -1, nullptr, 0);
+    const AVStream* const stream = best < 0 ? nullptr : opened->streams[best];
+    if (stream == nullptr || (stream->disposition & AV_DISPOSITION_ATTACHED_PIC) != 0) {  // the cover of a song
+      const bool has_sound = av_find_best_stream(opened, AVMEDIA_TYPE_AUDIO, -1, -1, nullptr, 0) >= 0;
+      return error("{}: {}", name_, has_sound ? "sound without a video" : "not a video");
+    }
+    stream_ = stream;
+    fps_ = 0;  // until the decoder may have told it
+    num_given_ = num_undecoded_ = 0;
+    end_s_ = 0;
+    first_pts_.reset();
+    all_sent_ = broke_off_ = last_is_partial_ = told_interlaced_ = false;
+    warnings_.clear();
+    return open_decoder();
+  }
+
+  [[nodiscard]] double fps() const override { return fps_; }
+  [[nodiscard]] bool has_times() const override { return first_pts_.has_value(); }
+  [[nodiscard]] int64_t num_frames_hint() const override {
+    int64_t count = stream_->nb_frames;
+    // What an edit list hides is counted, too, but not shown.
+    const int64_t by_duration = std::llround(stream_duration_s() * fps_);
+    if (by_duration > 0) count = count > 0 ? std::min(count, by_duration) : by_duration;
+    if (count <= 0 && input_->duration > 0) {
+      count = std::llround(static_cast<double>(input_->duration) / AV_TIME_BASE * fps_);
+    }
+    return std::max<int64_t>(count, 0);
+  }
+  [[nodiscard]] bool broke_off() const override { return broke_off_; }
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    std::vector<std::string> all = warnings_;
+    if (num_undecoded_ > 0) all.push_back(fmt::format("{}: {} pieces cannot be decoded", name_, num_undecoded_));
+    return all;
+  }
+
+  Result<std::optional<Picture>> next() override {
+    constexpr int kMostFailures = 1000;  // of a decoder that goes on failing without taking anything in
+    for (int failures = 0; failures < kMostFailures;) {
+      const int code = avcodec_receive_frame(decoder_.get(), decoded_.get());
+      if (code == 0) return picture();
+      if (code == AVERROR_EOF) break;
+      if (code != AVERROR(EAGAIN)) {
+        ++num_undecoded_, ++failures;
+      } else {
+        failures = 0;
+        feed();
+      }
+    }
+    broke_off_ = broke_off_ || last_is_partial_ || ends_early();
+    return std::optional<Picture>();
+  }
+
+ private:
+  Result<void> open_decoder() {
+    const AVCodec* const codec = avcodec_find_decoder(stream_->codecpar->codec_id);
+    if (codec == nullptr) return error("{}: no decoder for {}", name_, avcodec_get_name(stream_->codecpar->codec_id));
+    decoder_.reset(avcodec_alloc_context3(codec));
+    avcodec_parameters_to_context(decoder_.get(), stream_->codecpar);
+    decoder_->pkt_timebase = stream_->time_base;
+    decoder_->thread_count = 0;  // as many as there are cores
+    if (const int failed = avcodec_open2(decoder_.get(), codec, nullptr); failed < 0) {
+      return error("{}: {} cannot be decoded ({})", name_, codec->name, ffmpeg_text(failed));
+    }
+    return {};
+  }
+
+  // The next packet of the stream to the decoder.
+  void feed() {
+    if (all_sent_) return;
+    while (true) {
+      const int code = av_read_frame(input_.get(), packet_.get());
+      if (code < 0) {
+        broke_off_ = broke_off_ || (code != AVERROR_EOF && code != AVERROR(EAGAIN));
+        all_sent_ = true;
+        avcodec_send_packet(decoder_.get(), nullptr);
+        return;
+      }
+      const AVRational ticks = input_->streams[packet_->stream_index]->time_base;
+      if (packet_->pts != AV_NOPTS_VALUE) {
+        end_s_ = std::max(end_s_, static_cast<double>(packet_->pts + packet_->duration) * av_q2d(ticks));
+      }
+      const bool is_ours = packet_->stream_index == stream_->index;
+      if (is_ours) {
+        last_is_partial_ = (packet_->flags & AV_PKT_FLAG_CORRUPT) != 0;
+        if (avcodec_send_packet(decoder_.get(), packet_.get()) < 0) ++num_undecoded_;
+      }
+      av_packet_unref(packet_.get());
+      if (is_ours) return;
+    }
+  }
+
+  Result<std::optional<Picture>> picture() {
+    const AVFrame& frame = *decoded_;
+    if (num_given_ == 0) look_at_first(frame);
+    const bool is_interlaced = frame.interlaced_frame != 0;
+    if (is_interlaced && !told_interlaced_) {
+      warnings_.push_back(fmt::format("{}: interlaced; one field of each picture is used", name_));
+    }
+    told_interlaced_ = told_interlaced_ || is_interlaced;
+    if (const Result<void> done = convert(frame); !done) return done.failure();
+    cv::Mat stored(converted_->height, converted_->width, CV_8UC3, converted_->data[0],
+                   static_cast<size_t>(converted_->linesize[0]));
+    if (is_interlaced && stored.rows > 1) keep_one_field(stored, frame.top_field_first != 0);
+    Picture shown{.image = shown_picture(stored, pixel_aspect_, turn_), .time_ns = time_of(frame)};
+    ++num_given_;
+    return std::optional<Picture>(std::move(shown));
+  }
+
+  void look_at_first(const AVFrame& frame) {
+    // The base rate of the time stamps is exact where the rate is constant; where it is not, the mean counts.
+    const double mean = ratio_of(stream_->avg_frame_rate);
+    fps_ = ratio_of(av_guess_frame_rate(input_.get(), const_cast<AVStream*>(stream_), nullptr));
+    if (mean > 0 && std::abs(fps_ / mean - 1) > 0.01) fps_ = mean;
+    if (frame.best_effort_timestamp != AV_NOPTS_VALUE) first_pts_ = frame.best_effort_timestamp;
+    if (!first_pts_) fps_ = ratio_of(decoder_->framerate);  // the container's is made up then
+    if (!(fps_ > 0 && fps_ <= 1000)) fps_ = 0;
+    if (!first_pts_ && fps_ > 0) {
+      warnings_.push_back(fmt::format("{}: carries no times; {:.3f} frames a second, as its coding says", name_, fps_));
+    }
+
+    turn_ = {};
+    if (const uint8_t* bytes = av_stream_get_side_data(stream_, AV_PKT_DATA_DISPLAYMATRIX, nullptr)) {
+      take_turn(bytes);
+    } else if (const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_DISPLAYMATRIX)) {
+      take_turn(data->data);
+    }
+    const double aspect = ratio_of(
+        av_guess_sample_aspect_ratio(input_.get(), const_cast<AVStream*>(stream_), const_cast<AVFrame*>(&frame)));
+    pixel_aspect_ = believed_pixel_aspect(aspect > 0 ? aspect : 1);
+    if (pixel_aspect_ != 1) {
+      warnings_.push_back(fmt::format("{}: pixels {:.3f} times as wide as high, made square", name_, pixel_aspect_));
+    }
+    if (frame.color_trc == AVCOL_TRC_SMPTE2084) {
+      warnings_.push_back(fmt::format("{}: HDR (PQ); taken as it is, it looks flat and dark", name_));
+    }
+  }
+
+  void take_turn(const uint8_t* bytes) {
+    std::array<int32_t, 9> matrix{};
+    std::copy_n(reinterpret_cast<const int32_t*>(bytes), matrix.size(), matrix.begin());
+    if (const std::optional<Turn> turn = turn_of_matrix(matrix)) {
+      turn_ = *turn;
+    } else {
+      warnings_.push_back(fmt::format("{}: turned by {:.0f} degrees, which is no quarter turn; taken as it is stored",
+                                      name_, -av_display_rotation_get(matrix.data())));
+    }
+  }
+
+  // Decoded pixels to 8-bit B, G, R, by the frame's own colour matrix and range.
+  Result<void> convert(const AVFrame& frame) {
+    if (converted_->width != frame.width || converted_->height != frame.height) {
+      av_frame_unref(converted_.get());
+      converted_->format = AV_PIX_FMT_BGR24;
+      converted_->width = frame.width;
+      converted_->height = frame.height;
+      // Not straight into an image: the scaler writes past a row's end unless rows are aligned.
+      if (av_frame_get_buffer(converted_.get(), 0) < 0) {
+        return error("{}: no memory for a picture of {}x{}", name_, frame.width, frame.height);
+      }
+    }
+    if (const PixelKind kind{frame.width, frame.height, frame.format, frame.colorspace, frame.color_range};
+        !scaler_ || kind != kind_) {
+      if (!make_scaler(kind)) return error("{}: pictures of an unknown kind", name_);
+    }
+    if (sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, converted_->data, converted_->linesize) <
+        0) {
+      return error("{}: a picture cannot be converted", name_);
+    }
+    return {};
+  }
+
+  bool make_scaler(const PixelKind& kind) {
+    kind_ = kind;
+    scaler_.reset(sws_getContext(kind.width, kind.height, static_cast<AVPixelFormat>(kind.format), kind.width,
+                                 kind.height, AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
+    if (!scaler_) return false;
+    int *of_source = nullptr, *of_target = nullptr, source_range = 0, range = 0, brightness = 0, contrast = 0,
+        saturation = 0;
+    if (sws_getColorspaceDetails(scaler_.get(), &of_source, &source_range, &of_target, &range, &brightness, &contrast,
+                                 &saturation) >= 0) {
+      const bool is_full = source_range != 0 || kind.range == AVCOL_RANGE_JPEG;
+      sws_setColorspaceDetails(scaler_.get(), sws_getCoefficients(kind.colour_space), is_full ? 1 : 0, of_target, range,
+                               brightness, contrast, saturation);
+    }
+    return true;
+  }
+
+  // Since the first picture. Where a constant rate explains the stamp within the container's rounding, exactly that.
+  [[nodiscard]] std::optional<int64_t> time_of(const AVFrame& frame) const {
+    if (!first_pts_ || frame.best_effort_timestamp == AV_NOPTS_VALUE) return std::nullopt;
+    constexpr int64_t kMostRounding_ns = 2'000'000;
+    const AVRational nanoseconds{1, 1'000'000'000};
+    const int64_t time = av_rescale_q(frame.best_effort_timestamp - *first_pts_, stream_->time_base, nanoseconds);
+    if (fps_ == 0) return time;
+    const int64_t even = std::llround(static_cast<double>(num_given_) * 1e9 / fps_);
+    const int64_t rounding = std::min(av_rescale_q(1, stream_->time_base, nanoseconds) + 1, kMostRounding_ns);
+    return std::abs(time - even) <= rounding ? even : time;
+  }
+
+  [[nodiscard]] double stream_duration_s() const {
+    return stream_->duration > 0 ? static_cast<double>(stream_->duration) * av_q2d(stream_->time_base) : 0;
+  }
+  // Pictures and sound end before the file says, by more than rounding may explain.
+  [[nodiscard]] bool ends_early() const {
+    if (input_->duration <= 0 || input_->duration_estimation_method == AVFMT_DURATION_FROM_BITRATE) return false;
+    const double told_s = static_cast<double>(input_->duration) / AV_TIME_BASE;
+    const double start_s =
+        input_->start_time == AV_NOPTS_VALUE ? 0 : static_cast<double>(input_->start_time) / AV_TIME_BASE;
+    const double frame_s = fps_ > 0 ? 1 / fps_ : 0;
+    return told_s - (end_s_ - std::min(start_s, 0.0)) > std::max(3 * frame_s, 0.01 * told_s);
+  }
+
+  std::string name_;
+  InputHandle input_;
+  CodecHandle decoder_;
+  PacketHandle packet_;
+  FrameHandle decoded_, converted_;
+  ScalerHandle scaler_;  // of kind_
+  PixelKind kind_;
+  const AVStream* stream_ = nullptr;  // input_'s
+  double fps_ = 0, pixel_aspect_ = 1;
+  double end_s_ = 0;  // of what was read, in the file's time
+  Turn turn_;
+  std::optional<int64_t> first_pts_;
+  int64_t num_given_ = 0, num_undecoded_ = 0;
+  bool all_sent_ = false, broke_off_ = false, last_is_partial_ = false, told_interlaced_ = false;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<FrameSource>> open_video_file(const std::string& path) {
+  silence_ffmpeg();
+  auto source = std::make_unique<VideoFile>(path);
+  if (const Result<void> opened = source->rewind(); !opened) return opened.failure();
+  return std::unique_ptr<FrameSource>(std::move(source));
+}
+
+}  // namespace silpose
