@@ -52,7 +52,9 @@ void check_together(const InputOptions& options) {
       throw UsageError(fmt::format("{}: needs --segmenter {}", option, segmenter));
   };
   belongs("--key-colour", options.key_colour != "auto", "chroma");
-  belongs("--depth", !options.depths.empty(), "depth");
+  if (!options.depths.empty() && options.segmenter != "depth" && options.segmenter != "background") {
+    throw UsageError("--depth: needs --segmenter depth or background");
+  }
   belongs("--depth-range", !options.depth_range.empty(), "depth");
   if (options.segmenter == "depth" && options.depths.empty()) throw UsageError("--segmenter depth: needs --depth");
 }
@@ -109,7 +111,8 @@ void add_input_options(CLI::App& command, InputOptions& options) {
       ->check(is_key_colour());
   command
       .add_option("--depth", options.depths,
-                  "With depth: a folder or pattern of 16-bit pictures in mm, one a frame, once a camera")
+                  "With depth, and with background beside its colours: a folder or pattern of 16-bit pictures in mm, "
+                  "one a frame, once a camera")
       ->allow_extra_args(false);
   command.add_option("--depth-range", options.depth_range,
                      "MIN,MAX in metres: what lies between is the person; without, what stands before the scene");

@@ -25,7 +25,8 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
   if (!directory) return directory.failure();
   Result<ObservationSource> source = ObservationSource::open(options.input, console);
   if (!source) return source.failure();
-  std::filesystem::create_directories(directory->path() / "masks");
+  std::error_code failed;  // which the first mask would tell
+  std::filesystem::create_directories(directory->path() / "masks", failed);
 
   int64_t frames = 0, empty = 0;
   double decode_s = 0, segment_s = source->learning_s(), area = 0;

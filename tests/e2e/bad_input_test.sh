@@ -133,6 +133,8 @@ by_depth=("${track[@]}" colour/video.mp4 --segmenter depth)
   fail "depth pictures are refused"
 expect_failure 2 'segmenter depth.*--depth' "${by_depth[@]}"
 expect_failure 2 'depth.*segmenter depth' "${track[@]}" colour/video.mp4 --depth deep
+expect_failure 1 'short: 1 depth images for 3 frames' "${track[@]}" colour/video.mp4 --segmenter background --depth short
+expect_failure 1 'not an online one' "${track[@]}" colour/video.mp4 --segmenter background --background online --depth deep
 expect_failure 2 'depth-range.*2,1' "${by_depth[@]}" --depth deep --depth-range 2,1
 expect_failure 2 'depth-range' "${by_depth[@]}" --depth deep --depth-range near
 expect_failure 2 'depth-range' "${by_depth[@]}" --depth deep --depth-range 1,nan

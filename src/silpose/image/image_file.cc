@@ -3,8 +3,10 @@
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace silpose {
@@ -30,6 +32,24 @@ bool is_cut_off(std::string_view bytes) {
   return false;
 }
 
+// Width and height, of a format whose header is easily read: so that a huge picture is refused before it takes memory.
+std::optional<std::pair<uint64_t, uint64_t>> size_told(std::string_view bytes) {
+  const auto number = [&](size_t at, size_t length) {
+    uint64_t value = 0;
+    for (size_t i = 0; i < length; ++i) value = value << 8 | static_cast<uint8_t>(bytes[at + i]);
+    return value;
+  };
+  if (bytes.size() > 24 && bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n") return std::pair(number(16, 4), number(20, 4));
+  if (bytes.substr(0, 2) == "\xff\xd8") {  // JPEG: the first start of frame
+    for (size_t at = 2; at + 9 <= bytes.size() && bytes[at] == '\xff'; at += 2 + number(at + 2, 2)) {
+      const uint64_t marker = number(at + 1, 1);
+      const bool starts_frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
+      if (starts_frame) return std::pair(number(at + 7, 2), number(at + 5, 2));
+    }
+  }
+  return std::nullopt;
+}
+
 // A picture as OpenCV reads it under `flags`.
 Result<cv::Mat> decode(const std::filesystem::path& path, int flags) {
   std::error_code code;
@@ -40,6 +60,12 @@ Result<cv::Mat> decode(const std::filesystem::path& path, int flags) {
   if (!stream) return error("{}: cannot be read", path.string());
   if (bytes.empty()) return error("{}: the file is empty", path.string());
   if (is_cut_off(bytes)) return error("{}: the picture is cut off", path.string());
+  const auto too_large = [&](uint64_t width, uint64_t height) {
+    return error("{}: {}x{} are more pixels than the {} that can be handled", path.string(), width, height,
+                 kMostPixels);
+  };
+  const auto told = size_told(bytes);
+  if (told && told->first * told->second > kMostPixels) return too_large(told->first, told->second);
   cv::Mat decoded;
   try {
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));
@@ -48,6 +74,9 @@ Result<cv::Mat> decode(const std::filesystem::path& path, int flags) {
     decoded.release();
   }
   if (decoded.empty()) return error("{}: not a picture", path.string());
+  if (decoded.total() > kMostPixels) {
+    return too_large(static_cast<uint64_t>(decoded.cols), static_cast<uint64_t>(decoded.rows));
+  }
   return decoded;
 }
 
@@ -74,7 +103,7 @@ Result<void> encode(const std::filesystem::path& path, const cv::Mat& picture) {
   std::ofstream stream(path, std::ios::binary);
   stream.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
   stream.close();
-  if (!stream) return error("{}: cannot be written", path.string());
+  if (!stream) return error("{}: cannot be written (disk full?)", path.string());
   return {};
 }
 

@@ -12,7 +12,11 @@
 
 namespace silpose {
 
-// Errors: no such file, empty, not a picture.
+// What is larger (8192x8192) is refused: a clip of such pictures fills any memory.
+inline constexpr uint64_t kMostPixels = uint64_t{1} << 26;
+
+// 16-bit and transparent pictures come as 8-bit colour. Errors: no such file, empty, not a picture, more than
+// kMostPixels.
 Result<ByteImage> read_colour_image(const std::filesystem::path& path);  // 3 channels B, G, R
 Result<ByteImage> read_grey_image(const std::filesystem::path& path);    // 1 channel
 Result<Mask> read_mask(const std::filesystem::path& path);               // white (>= 128) is set

@@ -88,6 +88,34 @@ TEST_F(ImageFileTest, RefusesPicturesThatAreCutOff) {
   }
 }
 
+TEST_F(ImageFileTest, RefusesHugePicturesBeforeTheyTakeMemory) {
+  for (const char* name : {"huge.png", "huge.jpg"}) {
+    write_image(folder_ / name, gradient(64, 64, 3)).value();
+    std::ifstream stream(folder_ / name, std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    const std::string kStart = "\xff\xc0";
+    const size_t at = std::string(name) == "huge.png" ? 18 : bytes.find(kStart) + 5;
+    const size_t step = std::string(name) == "huge.png" ? 4 : 2;
+    for (const size_t i : {at, at + step}) bytes.replace(i, 2, "\x75\x30");  // 30000
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    EXPECT_THAT(read_colour_image(folder_ / name).error().message, HasSubstr("30000x30000 are more pixels")) << name;
+  }
+}
+
+TEST_F(ImageFileTest, DeepAndTransparentPicturesComeAsEightBitColour) {
+  DepthImage deep(4, 3, 1, 0x8012);
+  write_depth_image(folder_ / "deep.png", deep).value();
+  const ByteImage image = read_colour_image(folder_ / "deep.png").value();
+  EXPECT_EQ(image.channels(), 3);
+  EXPECT_NEAR(image.at(2, 1, 1), 0x80, 1);
+}
+
+TEST_F(ImageFileTest, SaysWhenTheDiskIsFull) {
+  fs::create_symlink("/dev/full", folder_ / "full.png");
+  EXPECT_THAT(write_image(folder_ / "full.png", gradient(4, 4, 3)).error().message,
+              HasSubstr("full.png: cannot be written"));
+}
+
 TEST_F(ImageFileTest, SaysWhenItCannotWrite) {
   const ByteImage image = gradient(4, 4, 3);
   EXPECT_THAT(write_image(folder_ / "no_such_folder" / "a.png", image).error().message, HasSubstr("cannot be written"));

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "silpose/image/ffmpeg.h"
+#include "silpose/image/image_file.h"
 #include "silpose/image/shown_picture.h"
 
 extern "C" {
@@ -212,6 +213,10 @@ class VideoFile : public FrameSource {
       converted_->format = AV_PIX_FMT_BGR24;
       converted_->width = frame.width;
       converted_->height = frame.height;
+      if (static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height) > kMostPixels) {
+        return error("{}: {}x{} are more pixels than the {} that can be handled", name_, frame.width, frame.height,
+                     kMostPixels);
+      }
       // Not straight into an image: the scaler writes past a row's end unless rows are aligned.
       if (av_frame_get_buffer(converted_.get(), 0) < 0) {
         return error("{}: no memory for a picture of {}x{}", name_, frame.width, frame.height);

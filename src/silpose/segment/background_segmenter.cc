@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/background_segm.hpp>
+#include <optional>
 #include <utility>
 
+#include "silpose/segment/depth_model.h"
 #include "silpose/segment/edge_matte.h"
 #include "silpose/segment/foreground.h"
 #include "silpose/segment/mask_confidence.h"
@@ -27,14 +29,23 @@ class BackgroundSegmenter : public Segmenter {
                    finder_.model().width(), finder_.model().height());
     }
     const ByteImage luma_chroma = to_luma_chroma(image);
-    const Mask found = finder_.find(luma_chroma);
+    std::optional<Image<float>> depth;
+    if (options_.depth) {
+      const Result<DepthImage> seen = options_.depth->files.image_of(index);
+      if (!seen) return seen.failure();
+      depth = depth_evidence(*seen, options_.depth->background);
+    }
+    const Mask found = finder_.find(luma_chroma, depth ? &*depth : nullptr);
     const Mask blob = choose_blob(found, blob_);
     ByteImage confidence = finder_.confidence(found);
     doubt_changes(confidence, found, blob);
+    const int grow_px = options_.clean_up.grow_px;
+    // Colour alone must not decide the edge of what depth had a say in.
+    if (depth) return monitor_.judge(grow(blob, grow_px), std::move(confidence));
     const EdgeMatte matte = refine_edge(blob, luma_chroma, finder_.model().median);
     lower_confidence(confidence, matte.confidence);
     forgive_edges(confidence, matte.mask);
-    return monitor_.judge(grow(matte.mask, options_.clean_up.grow_px), std::move(confidence));
+    return monitor_.judge(grow(matte.mask, grow_px), std::move(confidence));
   }
   [[nodiscard]] int64_t first_index() const override { return options_.first_index; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }

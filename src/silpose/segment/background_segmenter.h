@@ -3,19 +3,28 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "silpose/segment/background_model.h"
+#include "silpose/segment/depth_files.h"
 #include "silpose/segment/segmenter.h"
 
 namespace silpose {
+
+// Depth that joins the colours.
+struct JoinedDepth {
+  DepthFiles files;
+  DepthImage background;  // learn_depth_background()
+};
 
 struct BackgroundSegmenterOptions {
   std::string name;                   // see Segmenter::name()
   int64_t first_index = 0;            // see Segmenter::first_index()
   std::vector<std::string> warnings;  // known from the start
   CleanUpOptions clean_up;
+  std::optional<JoinedDepth> depth;  // of a learned background; not of an online one
 };
 
 std::unique_ptr<Segmenter> make_background_segmenter(BackgroundModel model, BackgroundSegmenterOptions options);

@@ -70,6 +70,34 @@ Mask nearer_than_background(const DepthImage& depth, const DepthImage& backgroun
                 [&](size_t x, int y, uint16_t value) { return value < nearest[static_cast<size_t>(y) * width + x]; });
 }
 
+Image<float> depth_evidence(const DepthImage& depth, const DepthImage& background) {
+  check(depth.width() == background.width() && depth.height() == background.height(),
+        "depth_evidence: {}x{} before {}x{}", depth.width(), depth.height(), background.width(), background.height());
+  constexpr float kMaxFor = 6;                     // so that neighbours can outvote it
+  constexpr double kDeviations = 3;                // the tolerance is so many
+  constexpr double kSubjectRange_m = 4 / 2.50663;  // the subject may stand anywhere in 4 m; over sqrt(2 pi)
+  Image<float> evidence(depth.width(), depth.height());
+  parallel_for(static_cast<size_t>(depth.height()), 32, [&](size_t begin, size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      const auto seen = depth.row(y), behind = background.row(y);
+      const auto to = evidence.row(y);
+      for (size_t x = 0; x < seen.size(); ++x) {
+        if (seen[x] == 0) continue;
+        if (behind[x] == kUnknown) {
+          to[x] = kMaxFor;
+          continue;
+        }
+        // Who stands farther than the background is the background: the subject stood here while it was learned.
+        const double deviation = tolerance(1e-3 * behind[x]) / kDeviations;
+        const double nearer = std::max(0, behind[x] - seen[x]) * 1e-3 / deviation;
+        const double odds = 0.5 * nearer * nearer - std::log(kSubjectRange_m / deviation);
+        to[x] = static_cast<float>(std::min<double>(odds, kMaxFor));
+      }
+    }
+  });
+  return evidence;
+}
+
 Mask within_depth_range(const DepthImage& depth, const DepthRange& range) {
   return select(depth, [&](size_t, int, uint16_t value) {
     return value >= std::lround(1000 * range.min_m) && value <= std::lround(1000 * range.max_m);

@@ -21,6 +21,10 @@ DepthImage learn_depth_background(std::span<const DepthImage> images);
 // [H, W] set where the depth is known and nearer than the background by more than noise. REQUIRES: equal sizes.
 Mask nearer_than_background(const DepthImage& depth, const DepthImage& background);
 
+// [H, W] Log odds that the subject is there: what a pixel's depth says against the background's and its noise. 0 where
+// it is unknown. REQUIRES: equal sizes.
+Image<float> depth_evidence(const DepthImage& depth, const DepthImage& background);
+
 // [H, W] set where the depth lies in the range, ends included.
 Mask within_depth_range(const DepthImage& depth, const DepthRange& range);
 

@@ -81,6 +81,17 @@ TEST(DepthModel, NearerByMoreThanNoise) {
   EXPECT_EQ(nearer_than_background(DepthImage(1, 1, 1, 0), wall).count(), 0);
 }
 
+TEST(DepthModel, EvidenceIsALogOfOdds) {
+  const DepthImage wall(1, 1, 1, 4000);  // noise (30 + 6 * 16) / 3 = 42 mm; 4 m over sqrt(2 pi) is 1.5958 m
+  const auto evidence = [&](uint16_t depth) { return depth_evidence(DepthImage(1, 1, 1, depth), wall).at(0, 0); };
+  EXPECT_NEAR(evidence(4000), -std::log(1.5958 / 0.042), 1e-3);
+  EXPECT_NEAR(evidence(4000 - 84), 2 - std::log(1.5958 / 0.042), 1e-3);
+  EXPECT_EQ(evidence(4500), evidence(4000)) << "farther than the background";
+  EXPECT_EQ(evidence(3000), 6);
+  EXPECT_EQ(evidence(0), 0) << "unknown";
+  EXPECT_EQ(depth_evidence(DepthImage(1, 1, 1, 3000), DepthImage(1, 1, 1, 65535)).at(0, 0), 6) << "out of reach";
+}
+
 TEST(DepthModel, RangeIncludesItsEndsAndNothingUnknown) {
   const DepthRange range{0, 2.5};
   EXPECT_EQ(within_depth_range(DepthImage(1, 1, 1, 2500), range).count(), 1);

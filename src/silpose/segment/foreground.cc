@@ -156,6 +156,19 @@ void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma) {
   });
 }
 
+void ForegroundFinder::add_evidence(const Image<float>& others) {
+  parallel_for(static_cast<size_t>(model_.height()), kBlock, [&](size_t begin, size_t end) {
+    for (size_t y = begin; y < end; ++y) {
+      const std::span<const float> from = others.row(static_cast<int>(y));
+      float *evidence = &evidence_[(y + 1) * stride_ + 1], *belief = &belief_[(y + 1) * stride_ + 1];
+      for (size_t x = 0; x < from.size(); ++x) {
+        evidence[x] += from[x];
+        belief[x] = squash(evidence[x]);
+      }
+    }
+  });
+}
+
 // Blocks with a pixel that may be foreground, and those around them: elsewhere nothing can change.
 void ForegroundFinder::choose_blocks() {
   const size_t count = static_cast<size_t>(blocks_x_) * static_cast<size_t>(blocks_y_);
@@ -299,12 +312,17 @@ ByteImage ForegroundFinder::confidence(const Mask& found) const {
   return confidence;
 }
 
-Mask ForegroundFinder::find(const ByteImage& luma_chroma) {
+Mask ForegroundFinder::find(const ByteImage& luma_chroma, const Image<float>* others) {
   check(luma_chroma.width() == model_.width() && luma_chroma.height() == model_.height() && luma_chroma.channels() == 3,
         "ForegroundFinder: picture {}x{}x{}, background {}x{}", luma_chroma.width(), luma_chroma.height(),
         luma_chroma.channels(), model_.width(), model_.height());
   compare_texture(luma_chroma);
   weigh_evidence(luma_chroma);
+  if (others != nullptr) {
+    check(others->width() == model_.width() && others->height() == model_.height(),
+          "ForegroundFinder: other evidence of {}x{}", others->width(), others->height());
+    add_evidence(*others);
+  }
   choose_blocks();
   tie_neighbours(luma_chroma);
   smooth_beliefs();

@@ -17,8 +17,9 @@ class ForegroundFinder {
  public:
   explicit ForegroundFinder(BackgroundModel model);
 
-  // [H, W] of a picture [H, W, 3] in Y, Cr, Cb. REQUIRES: the model's size.
-  Mask find(const ByteImage& luma_chroma);
+  // [H, W] of a picture [H, W, 3] in Y, Cr, Cb; `others` [H, W]: log odds by other evidence than colour, such as
+  // depth. REQUIRES: the model's size.
+  Mask find(const ByteImage& luma_chroma, const Image<float>* others = nullptr);
 
   // [H, W] How sure the last find() is, 255: sure. What only a shadow explains is not, whichever way it was decided.
   [[nodiscard]] ByteImage confidence(const Mask& found) const;
@@ -28,6 +29,7 @@ class ForegroundFinder {
  private:
   void compare_texture(const ByteImage& luma_chroma);
   void weigh_evidence(const ByteImage& luma_chroma);
+  void add_evidence(const Image<float>& others);
   void choose_blocks();
   void tie_neighbours(const ByteImage& luma_chroma);
   void smooth_beliefs();

@@ -1,12 +1,28 @@
 #include "silpose/segment/given_masks.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "silpose/segment/trust_monitor.h"
 
 namespace silpose {
 namespace {
+
+// Nearly all pixels, as far as compression and soft edges leave them.
+bool is_black_and_white(const ByteImage& image, bool& has_white) {
+  constexpr int kBlack = 16, kWhite = 239;
+  constexpr double kNearlyAll = 0.98;
+  size_t num_black = 0, num_white = 0;
+  const std::span<const uint8_t> pixels = image.pixels();
+  for (size_t i = 0; i + 2 < pixels.size(); i += 3) {
+    const auto [least, most] = std::minmax({pixels[i], pixels[i + 1], pixels[i + 2]});
+    num_black += most <= kBlack ? 1 : 0;
+    num_white += least >= kWhite ? 1 : 0;
+  }
+  has_white = num_white > 0;
+  return static_cast<double>(num_black + num_white) >= kNearlyAll * static_cast<double>(pixels.size()) / 3;
+}
 
 Mask white_of(const ByteImage& image) {
   ByteImage grey(image.width(), image.height());
@@ -21,8 +37,13 @@ Mask white_of(const ByteImage& image) {
 
 class GivenMasks : public Segmenter {
  public:
-  GivenMasks(std::optional<Video> masks, int64_t offset, const CleanUpOptions& clean_up)
-      : masks_(std::move(masks)), offset_(offset), clean_up_(clean_up) {
+  GivenMasks(std::string name, std::optional<Video> masks, int64_t offset, const CleanUpOptions& clean_up,
+             std::vector<std::string> warnings)
+      : name_(std::move(name)),
+        masks_(std::move(masks)),
+        offset_(offset),
+        clean_up_(clean_up),
+        warnings_(std::move(warnings)) {
     is_cleaned_ = clean_up.region || clean_up.garbage_mask || clean_up.grow_px != 0 || clean_up.min_blob_px > 0;
     clean_up_.max_hole = clean_up_.join_gap = 0;  // whoever made the masks meant their holes and gaps
     clean_up_.min_blob_px = std::max(clean_up_.min_blob_px, 0);
@@ -30,42 +51,67 @@ class GivenMasks : public Segmenter {
 
   Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
     check(image.channels() == 3, "GivenMasks: {} channels", image.channels());
-    if (!masks_) return judge(white_of(image));
+    if (!masks_) return judge(white_of(told(image)));
     while (true) {
       Result<std::optional<Frame>> frame = masks_->next();
       if (!frame) return frame.failure();
       if (!frame->has_value() || (*frame)->index + offset_ > index) {
-        return error("{}: {} masks, frame {} has none", masks_->name(), num_read_, index);
+        return error("{}: {} masks, frame {} has none", name_, num_read_, index);
       }
       ++num_read_;
       if ((*frame)->index + offset_ < index) continue;
       const ByteImage& mask = (*frame)->images[0];
       if (mask.width() != image.width() || mask.height() != image.height()) {
-        return error("{}: mask {} is {}x{}, its picture {}x{}", masks_->name(), index, mask.width(), mask.height(),
+        return error("{}: mask {} is {}x{}, its picture {}x{}", name_, index, mask.width(), mask.height(),
                      image.width(), image.height());
       }
-      return judge(white_of(mask));
+      return judge(white_of(told(mask)));
     }
   }
   [[nodiscard]] std::string name() const override { return "masks"; }
+  [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
   [[nodiscard]] int64_t first_index() const override { return masks_ ? masks_->first_index() + offset_ : 0; }
 
  private:
+  // The first mask that is none is told of.
+  const ByteImage& told(const ByteImage& mask) {
+    bool has_white = false;
+    if (!is_told_ && !is_black_and_white(mask, has_white)) {
+      is_told_ = true;
+      warnings_.push_back(fmt::format("{}: not only black and white; what is lighter than half counts", name_));
+    }
+    return mask;
+  }
   Segmentation judge(const Mask& mask) { return monitor_.judge(is_cleaned_ ? choose_blob(mask, clean_up_) : mask); }
 
+  std::string name_;
   std::optional<Video> masks_;
   int64_t offset_;
   CleanUpOptions clean_up_;
-  bool is_cleaned_ = false;
+  std::vector<std::string> warnings_;
+  bool is_cleaned_ = false, is_told_ = false;
   int64_t num_read_ = 0;
   TrustMonitor monitor_;
 };
 
 }  // namespace
 
-std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, int64_t offset,
-                                            const CleanUpOptions& clean_up) {
-  return std::make_unique<GivenMasks>(std::move(masks), offset, clean_up);
+std::unique_ptr<Segmenter> make_given_masks(std::string name, std::optional<Video> masks, int64_t offset,
+                                            const CleanUpOptions& clean_up, std::vector<std::string> warnings) {
+  return std::make_unique<GivenMasks>(std::move(name), std::move(masks), offset, clean_up, std::move(warnings));
+}
+
+Result<bool> shows_masks(Video& video) {
+  constexpr int kEnough = 3;  // masks in which something is white: before them, all may be black
+  for (int found = 0; found < kEnough;) {
+    const Result<std::optional<Frame>> frame = video.next();
+    if (!frame) return frame.failure();
+    if (!frame->has_value()) return found > 0;
+    bool has_white = false;
+    if (!is_black_and_white((*frame)->images[0], has_white)) return false;
+    found += has_white ? 1 : 0;
+  }
+  return true;
 }
 
 }  // namespace silpose

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "silpose/image/video.h"
 #include "silpose/segment/segmenter.h"
@@ -13,7 +15,12 @@
 namespace silpose {
 
 // Mask number i belongs to picture number i + offset; without `masks` every picture is its own mask. White (>= 128) is
-// set.
-std::unique_ptr<Segmenter> make_given_masks(std::optional<Video> masks, int64_t offset, const CleanUpOptions& clean_up);
+// set. `name`: of what holds the masks.
+std::unique_ptr<Segmenter> make_given_masks(std::string name, std::optional<Video> masks, int64_t offset,
+                                            const CleanUpOptions& clean_up, std::vector<std::string> warnings = {});
+
+// Whether a video's pictures are masks: black and white alone, as told by the first ones that are not all black.
+// Errors: those of Video::next().
+Result<bool> shows_masks(Video& video);
 
 }  // namespace silpose

@@ -15,6 +15,7 @@
 namespace silpose {
 namespace {
 
+constexpr size_t kDepthSamples = 40;
 // Fractions of the picture (or the region) from which a warning is due.
 constexpr double kMuchHalfCovered = 0.002, kLittleMoves = 0.002;
 
@@ -76,7 +77,14 @@ Result<int64_t> offset_to_frames(const std::string& name, const char* what, int6
 Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const SegmenterOptions& options) {
   Result<Video> video = open_input(input, options);
   if (!video) return video.failure();
-  if (options.masks.empty()) return make_given_masks({}, 0, options.clean_up);
+  if (options.masks.empty()) {
+    std::vector<std::string> warnings;
+    if (options.kind == "auto") {
+      warnings.push_back(
+          fmt::format("{}: black and white alone, so taken for masks (--segmenter says otherwise)", input));
+    }
+    return make_given_masks(input, {}, 0, options.clean_up, std::move(warnings));
+  }
   Result<Video> masks = open_video(options.masks, {.default_fps = options.default_fps});
   if (!masks) return masks.failure();
   if (masks->width() != video->width() || masks->height() != video->height()) {
@@ -86,7 +94,7 @@ Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const Se
   const Result<int64_t> offset =
       offset_to_frames(options.masks, "masks", masks->first_index(), masks->num_frames_hint(), *video);
   if (!offset) return offset.failure();
-  return make_given_masks(std::move(*masks), *offset, options.clean_up);
+  return make_given_masks(options.masks, std::move(*masks), *offset, options.clean_up);
 }
 
 // A picture, or a clip of the empty scene.
@@ -117,6 +125,17 @@ Result<BackgroundModel> model_from_plate(const std::string& plate, const std::st
   return background_from_plate((*first)->images[0], samples);
 }
 
+Result<DepthFiles> open_depth(const SegmenterOptions& options, const Video& video) {
+  Result<PictureList> files = list_pictures(options.depth);
+  if (!files) return files.failure();
+  DepthFiles depth{.name = options.depth, .files = std::move(*files), .width = video.width(), .height = video.height()};
+  const Result<int64_t> offset =
+      offset_to_frames(depth.name, "depth images", depth.first_number(), std::ssize(depth.files.paths), video);
+  if (!offset) return offset.failure();
+  depth.offset = *offset;
+  return depth;
+}
+
 Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, const SegmenterOptions& options,
                                                    ProgressSink* progress) {
   Result<Video> opened = open_input(input, options);
@@ -124,7 +143,18 @@ Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, con
   Video& video = *opened;
   const std::string background = options.background.empty() ? "auto" : options.background;
   BackgroundSegmenterOptions made{
-      .name = "background " + background, .first_index = 0, .warnings = {}, .clean_up = options.clean_up};
+      .name = "background " + background, .first_index = 0, .warnings = {}, .clean_up = options.clean_up, .depth = {}};
+  if (!options.depth.empty()) {
+    if (video.is_live() || background.starts_with("online")) {
+      return error("{}: depth joins a background that is learned beforehand, not an online one", input);
+    }
+    Result<DepthFiles> depth = open_depth(options, video);
+    if (!depth) return depth.failure();
+    const Result<std::vector<DepthImage>> samples = depth->samples(kDepthSamples, progress);
+    if (!samples) return samples.failure();
+    made.name += " with depth";
+    made.depth = JoinedDepth{std::move(*depth), learn_depth_background(*samples)};
+  }
 
   if (background == "online" || background == "online:knn" || (background == "auto" && video.is_live())) {
     const bool knn = background == "online:knn";
@@ -190,21 +220,22 @@ Result<std::unique_ptr<Segmenter>> make_depth(const std::string& input, const Se
   if (options.depth.empty()) return error("segmenter 'depth': no depth images are given");
   Result<Video> video = open_input(input, options);
   if (!video) return video.failure();
-  Result<PictureList> files = list_pictures(options.depth);
-  if (!files) return files.failure();
-  DepthFiles depth{.name = options.depth, .files = std::move(*files)};
-  const Result<int64_t> offset =
-      offset_to_frames(depth.name, "depth images", depth.first_number(), std::ssize(depth.files.paths), *video);
-  if (!offset) return offset.failure();
-  depth.offset = *offset;
-  return make_depth_segmenter(std::move(depth), video->width(), video->height(), options.depth_range, options.clean_up,
-                              progress);
+  Result<DepthFiles> depth = open_depth(options, *video);
+  if (!depth) return depth.failure();
+  return make_depth_segmenter(std::move(*depth), options.depth_range, options.clean_up, progress);
 }
 
-std::string chosen_kind(const SegmenterOptions& options) {
+Result<std::string> chosen_kind(const std::string& input, const SegmenterOptions& options) {
   if (options.kind != "auto") return options.kind;
-  if (!options.masks.empty()) return "masks";
-  return options.background.empty() && has_person_networks(options.networks) ? "learned" : "background";
+  if (!options.masks.empty()) return std::string("masks");
+  if (options.background.empty()) {
+    Result<Video> video = open_input(input, options);
+    if (!video) return video.failure();
+    const Result<bool> masks = video->is_live() ? false : shows_masks(*video);
+    if (!masks) return masks.failure();
+    if (*masks) return std::string("masks");
+  }
+  return std::string(options.background.empty() && has_person_networks(options.networks) ? "learned" : "background");
 }
 
 }  // namespace
@@ -212,7 +243,9 @@ std::string chosen_kind(const SegmenterOptions& options) {
 Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, const SegmenterOptions& options,
                                                   ProgressSink* progress) {
   options.clean_up.check();
-  const std::string kind = chosen_kind(options);
+  const Result<std::string> chosen = chosen_kind(input, options);
+  if (!chosen) return chosen.failure();
+  const std::string& kind = *chosen;
   if (kind == "masks") return make_masks(input, options);
   if (kind == "learned") return make_learned(input, options, progress);
   if (kind == "background") return make_background(input, options, progress);

@@ -54,18 +54,20 @@ struct SegmenterOptions {
   // order, otherwise mask number i to frame number i.
   std::string masks;
   std::optional<KeyColour> key_colour;  // of the screen; absent: found from the clip
-  std::string depth;                    // 16-bit pictures in mm: a directory or a pattern; to frames as masks are
+  // 16-bit pictures in mm: a directory or a pattern; to frames as masks are. With kind background they join the
+  // colours.
+  std::string depth;
   std::optional<DepthRange> depth_range;
   double default_fps = 30;  // of input that carries no rate
   CleanUpOptions clean_up;  // given masks stay as they are unless a region, a garbage mask or growth is asked for
 };
 
 // For one camera's input as open_video() takes it. Reads the input, or its lead-in, once where a background is learned
-// from it. `auto` is masks where masks are given, background where one is asked for, otherwise learned if `networks` is
-// there and background `auto` if not; a live input's background is learned online.
-// Errors: unknown kind or background; the input, the plate, the masks or the depth cannot be read, or have another size
-// than the input; masks or depth that end before the frames do; no screen to key by; no frame in the lead-in; the
-// networks are not there or damaged; stopped by the progress sink.
+// from it. `auto` is masks where masks are given, background where one is asked for, masks where the input itself is
+// black and white alone, otherwise learned if `networks` is there and background `auto` if not; a live input's
+// background is learned online. Errors: unknown kind or background; the input, the plate, the masks or the depth cannot
+// be read, or have another size than the input; masks or depth that end before the frames do; no screen to key by; no
+// frame in the lead-in; the networks are not there or damaged; stopped by the progress sink.
 Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, const SegmenterOptions& options = {},
                                                   ProgressSink* progress = nullptr);
 

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "silpose/segment/scene_for_test.h"
@@ -155,6 +157,29 @@ TEST_F(SegmenterTest, TheInputItselfMayBeTheMasks) {
   EXPECT_EQ(segmenter->segment(image, 30).value().mask, truth(30));
 }
 
+TEST_F(SegmenterTest, AClipOfMasksIsTakenForMasks) {
+  write_masks("masks", kFrames);  // the first ones are all black
+  const auto segmenter = make_segmenter(at("masks")).value();
+  EXPECT_EQ(segmenter->name(), "masks");
+  EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("masks: black and white alone, so taken for masks")));
+  EXPECT_EQ(segmenter->segment(read_colour_image(at("masks/030.png")).value(), 30)->mask, truth(30));
+  VideoWriter writer = create_video(at("masks.mp4"), truth(0).width(), truth(0).height(), 10).value();
+  for (int i = 0; i < kFrames; ++i) writer.write(image_from_mask(truth(i))).value();
+  writer.close().value();
+  EXPECT_EQ(make_segmenter(at("masks.mp4")).value()->name(), "masks");
+  // Not where something else is asked for, nor a film.
+  EXPECT_EQ(make_segmenter(at("masks"), {.kind = "background"}).value()->name(), "background auto");
+  EXPECT_EQ(make_segmenter(at("masks"), {.background = "online"}).value()->name(), "background online");
+  EXPECT_EQ(make_segmenter(at("clip")).value()->name(), "background auto");
+}
+
+TEST_F(SegmenterTest, PicturesThatAreNoMasksAreTold) {
+  const auto segmenter = make_segmenter(at("clip"), {.kind = "masks"}).value();
+  EXPECT_THAT(segmenter->warnings(), IsEmpty());
+  for (int i = 0; i < 3; ++i) (void)segmenter->segment(picture(i), i).value();
+  EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("clip: not only black and white")));
+}
+
 TEST_F(SegmenterTest, TooFewMasks) {
   write_masks("masks", kFrames - 8);
   EXPECT_THAT(failure({.masks = at("masks")}), HasSubstr("masks: 42 masks for 50 frames of"));
@@ -223,6 +248,58 @@ TEST_F(SegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   EXPECT_THAT(segmenter->warnings(), IsEmpty());
   EXPECT_EQ(segmenter->segment(keyed(45), 45).value().mask.bounding_box(), (Box{0, 0, 12, 120}));
   EXPECT_THAT(failure({.kind = "chroma"}), HasSubstr("clip: no screen"));
+}
+
+TEST_F(SegmenterTest, DepthJoinsTheColours) {
+  // A subject of the background's own colours, its shadow, and a sensor that now and then sees nothing.
+  const TestScene scene{.shadow = 0.4};
+  const auto camouflaged = [&](int i) {
+    ByteImage image = scene.picture(place(i), static_cast<uint64_t>(i));
+    const ByteImage empty = scene.picture(-100, static_cast<uint64_t>(i) + 1000);
+    for (int v = 0; v < image.height(); ++v) {
+      for (int u = 0; u < image.width(); ++u) {
+        for (int c = 0; c < 3 && truth(i).get(u, v); ++c) image.at(u, v, c) = empty.at(u, v, c);
+      }
+    }
+    return image;
+  };
+  const auto depth = [&](int i, int num_blind_rows) {
+    DepthImage image(scene.width, scene.height, 1, 4000);
+    Rng rng(static_cast<uint64_t>(i));
+    for (int v = 0; v < image.height(); ++v) {
+      for (int u = 0; u < image.width(); ++u) {
+        const bool is_subject = truth(i).get(u, v);
+        const double metres = is_subject ? 3 : 4;
+        image.at(u, v) = static_cast<uint16_t>(std::lround(1000 * metres + 1.4 * metres * metres * rng.normal()));
+        if (rng.uniform() < 0.02 || (is_subject && v < 30 + num_blind_rows)) image.at(u, v) = 0;
+      }
+    }
+    return image;
+  };
+  for (const char* name : {"same", "depth", "blind"}) fs::create_directories(at(name));
+  for (int i = 0; i < kFrames; ++i) {
+    write_image(at(fmt::format("same/{:03}.png", i)), camouflaged(i)).value();
+    write_depth_image(at(fmt::format("depth/{:03}.png", i)), depth(i, 0)).value();
+    write_depth_image(at(fmt::format("blind/{:03}.png", i)), depth(i, 25)).value();
+  }
+  const auto worst = [&](const SegmenterOptions& options, const std::string& clip) {
+    const auto segmenter = make_segmenter(at(clip), options).value();
+    double least = 1;
+    for (int i = 15; i < 45; i += 5) {
+      const ByteImage image = clip == "same" ? camouflaged(i) : picture(i);
+      least = std::min(least, intersection_over_union(segmenter->segment(image, i)->mask, truth(i)));
+    }
+    return least;
+  };
+  EXPECT_LT(worst({.kind = "background"}, "same"), 0.3) << "colour cannot tell";
+  EXPECT_GT(worst({.kind = "background", .depth = at("depth")}, "same"), 0.95);
+  EXPECT_LT(worst({.kind = "depth", .depth = at("blind")}, "clip"), 0.7) << "depth alone cannot tell";
+  EXPECT_GT(worst({.kind = "background", .depth = at("blind")}, "clip"), 0.95);
+  EXPECT_EQ(make_segmenter(at("same"), {.kind = "background", .depth = at("depth")}).value()->name(),
+            "background auto with depth");
+  EXPECT_THAT(
+      make_segmenter(at("clip"), {.kind = "background", .background = "online", .depth = at("depth")}).error().message,
+      HasSubstr("not an online one"));
 }
 
 TEST_F(SegmenterTest, DepthSegmentsByItself) {

@@ -1,0 +1,32 @@
+// Depth images as files, one a picture of the clip they belong to.
+// Threads: a value; its functions only read.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "silpose/base/progress.h"
+#include "silpose/base/result.h"
+#include "silpose/image/image_file.h"
+#include "silpose/image/picture_list.h"
+
+namespace silpose {
+
+// Number i belongs to picture number i + offset.
+struct DepthFiles {
+  std::string name;
+  PictureList files;
+  int64_t offset = 0;
+  int width = 0, height = 0;  // of the pictures
+
+  [[nodiscard]] int64_t first_number() const { return files.numbers.empty() ? 0 : files.numbers.front(); }
+
+  // Of picture number `index`. Errors: there is none; it cannot be read, is not 16-bit or has another size.
+  [[nodiscard]] Result<DepthImage> image_of(int64_t index) const;
+
+  // At most `most` spread over all. Errors: those of image_of(); stopped by the progress sink.
+  [[nodiscard]] Result<std::vector<DepthImage>> samples(size_t most, ProgressSink* progress) const;
+};
+
+}  // namespace silpose
