@@ -10,7 +10,7 @@ find result -type f -exec sha256sum {} + | sort >before.txt
 full() {
   local name=$1 limit status failed=0
   shift
-  for limit in 0 1 2 3 4 6 8 12 16 24 32 48 64 96 128 192 256 384 512 768 1024 2048 4096; do
+  for limit in 0 1 4 8 12 64 16384; do
     status=0
     (ulimit -f $limit && exec "$silpose" "$@" --quiet 2>&1) | cat >err.txt || status=$?
     [[ $status == 0 ]] && break
@@ -23,7 +23,7 @@ full() {
     cmp -s before.txt after.txt || fail "$name, $limit KiB: the earlier result was touched"
     grep -o '[a-z_]*\.[a-z0-9]*[: ]' err.txt | tail -1 >>places.txt
   done
-  [[ $status == 0 && $failed -ge 2 ]] || fail "$name: exit $status after $failed failures: $(cat err.txt)"
+  [[ $status == 0 && $failed -ge 1 ]] || fail "$name: exit $status after $failed failures: $(cat err.txt)"
   rm -r result && cp -r truth result
 }
 full track track truth/video.mp4 --masks truth/masks --camera truth/camera.toml --particles 10 --layers 1 --out result

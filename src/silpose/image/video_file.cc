@@ -41,7 +41,47 @@ class VideoFile : public FrameSource {
       : name_(std::move(name)), packet_(av_packet_alloc()), decoded_(av_frame_alloc()), converted_(av_frame_alloc()) {}
 
   Result<void> rewind() override {
-    // Opened anew: seeking is not exact in every container.
+    if (Result<void> opened = open(); !opened) return opened;
+    if (stream_->nb_frames > 0 || counted_) return {};
+    count();
+    return open();
+  }
+
+  [[nodiscard]] double fps() const override { return fps_; }
+  [[nodiscard]] bool has_times() const override { return first_pts_.has_value(); }
+  [[nodiscard]] int64_t num_frames_hint() const override {
+    if (counted_) return *counted_;
+    // What an edit list hides is counted, too, but not shown.
+    const int64_t by_duration = std::llround(stream_duration_s() * fps_);
+    return by_duration > 0 ? std::min(stream_->nb_frames, by_duration) : stream_->nb_frames;
+  }
+  [[nodiscard]] bool broke_off() const override { return broke_off_; }
+  [[nodiscard]] std::vector<std::string> warnings() const override {
+    std::vector<std::string> all = warnings_;
+    if (num_undecoded_ > 0) all.push_back(fmt::format("{}: {} pieces cannot be decoded", name_, num_undecoded_));
+    return all;
+  }
+
+  Result<std::optional<Picture>> next() override {
+    constexpr int kMostFailures = 1000;  // of a decoder that goes on failing without taking anything in
+    for (int failures = 0; failures < kMostFailures;) {
+      const int code = avcodec_receive_frame(decoder_.get(), decoded_.get());
+      if (code == 0) return picture();
+      if (code == AVERROR_EOF) break;
+      if (code != AVERROR(EAGAIN)) {
+        ++num_undecoded_, ++failures;
+      } else {
+        failures = 0;
+        feed();
+      }
+    }
+    broke_off_ = broke_off_ || last_is_partial_ || ends_early();
+    return std::optional<Picture>();
+  }
+
+ private:
+  // Anew for a rewind, too: seeking is not exact in every container.
+  Result<void> open() {
     decoder_.reset();
     AVFormatContext* opened = nullptr;
     AVDictionary* options = nullptr;
@@ -74,43 +114,22 @@ class VideoFile : public FrameSource {
     return open_decoder();
   }
 
-  [[nodiscard]] double fps() const override { return fps_; }
-  [[nodiscard]] bool has_times() const override { return first_pts_.has_value(); }
-  [[nodiscard]] int64_t num_frames_hint() const override {
-    int64_t count = stream_->nb_frames;
-    // What an edit list hides is counted, too, but not shown.
-    const int64_t by_duration = std::llround(stream_duration_s() * fps_);
-    if (by_duration > 0) count = count > 0 ? std::min(count, by_duration) : by_duration;
-    if (count <= 0 && input_->duration > 0) {
-      count = std::llround(static_cast<double>(input_->duration) / AV_TIME_BASE * fps_);
+  // Reads the file through without decoding it: what it does not say of itself. The stream ends with it.
+  void count() {
+    int64_t packets = 0, first = INT64_MAX, last = INT64_MIN;
+    for (; av_read_frame(input_.get(), packet_.get()) >= 0; av_packet_unref(packet_.get())) {
+      if (packet_->stream_index != stream_->index || (packet_->flags & AV_PKT_FLAG_DISCARD) != 0) continue;
+      ++packets;
+      if (packet_->pts == AV_NOPTS_VALUE) continue;
+      first = std::min(first, packet_->pts);
+      last = std::max(last, packet_->pts);
     }
-    return std::max<int64_t>(count, 0);
-  }
-  [[nodiscard]] bool broke_off() const override { return broke_off_; }
-  [[nodiscard]] std::vector<std::string> warnings() const override {
-    std::vector<std::string> all = warnings_;
-    if (num_undecoded_ > 0) all.push_back(fmt::format("{}: {} pieces cannot be decoded", name_, num_undecoded_));
-    return all;
+    counted_ = packets;
+    if (packets > 1 && last > first) {
+      mean_fps_ = static_cast<double>(packets - 1) / (static_cast<double>(last - first) * av_q2d(stream_->time_base));
+    }
   }
 
-  Result<std::optional<Picture>> next() override {
-    constexpr int kMostFailures = 1000;  // of a decoder that goes on failing without taking anything in
-    for (int failures = 0; failures < kMostFailures;) {
-      const int code = avcodec_receive_frame(decoder_.get(), decoded_.get());
-      if (code == 0) return picture();
-      if (code == AVERROR_EOF) break;
-      if (code != AVERROR(EAGAIN)) {
-        ++num_undecoded_, ++failures;
-      } else {
-        failures = 0;
-        feed();
-      }
-    }
-    broke_off_ = broke_off_ || last_is_partial_ || ends_early();
-    return std::optional<Picture>();
-  }
-
- private:
   Result<void> open_decoder() {
     const AVCodec* const codec = avcodec_find_decoder(stream_->codecpar->codec_id);
     if (codec == nullptr) return error("{}: no decoder for {}", name_, avcodec_get_name(stream_->codecpar->codec_id));
@@ -168,9 +187,10 @@ class VideoFile : public FrameSource {
 
   void look_at_first(const AVFrame& frame) {
     // The base rate of the time stamps is exact where the rate is constant; where it is not, the mean counts.
-    const double mean = ratio_of(stream_->avg_frame_rate);
+    const double mean = mean_fps_ > 0 ? mean_fps_ : ratio_of(stream_->avg_frame_rate);
     fps_ = ratio_of(av_guess_frame_rate(input_.get(), const_cast<AVStream*>(stream_), nullptr));
-    if (mean > 0 && std::abs(fps_ / mean - 1) > 0.01) fps_ = mean;
+    is_even_ = !(mean > 0 && std::abs(fps_ / mean - 1) > 0.01);
+    if (!is_even_) fps_ = mean;
     if (frame.best_effort_timestamp != AV_NOPTS_VALUE) first_pts_ = frame.best_effort_timestamp;
     if (!first_pts_) fps_ = ratio_of(decoder_->framerate);  // the container's is made up then
     if (!(fps_ > 0 && fps_ <= 1000)) fps_ = 0;
@@ -255,7 +275,7 @@ class VideoFile : public FrameSource {
     constexpr int64_t kMostRounding_ns = 2'000'000;
     const AVRational nanoseconds{1, 1'000'000'000};
     const int64_t time = av_rescale_q(frame.best_effort_timestamp - *first_pts_, stream_->time_base, nanoseconds);
-    if (fps_ == 0) return time;
+    if (fps_ == 0 || !is_even_) return time;
     const int64_t even = std::llround(static_cast<double>(num_given_) * 1e9 / fps_);
     const int64_t rounding = std::min(av_rescale_q(1, stream_->time_base, nanoseconds) + 1, kMostRounding_ns);
     return std::abs(time - even) <= rounding ? even : time;
@@ -282,8 +302,11 @@ class VideoFile : public FrameSource {
   ScalerHandle scaler_;  // of kind_
   PixelKind kind_;
   const AVStream* stream_ = nullptr;  // input_'s
+  std::optional<int64_t> counted_;    // pictures, where the container does not say
+  double mean_fps_ = 0;               // of those counted
   double fps_ = 0, pixel_aspect_ = 1;
   double end_s_ = 0;  // of what was read, in the file's time
+  bool is_even_ = false;  // at that rate
   Turn turn_;
   std::optional<int64_t> first_pts_;
   int64_t num_given_ = 0, num_undecoded_ = 0;
