@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "silpose/image/ffmpeg.h"
-#include "silpose/image/image_file.h"
+#include "silpose/image/pixel_converter.h"
 #include "silpose/image/shown_picture.h"
 
 extern "C" {
@@ -27,18 +27,10 @@ bool starts_as_iso_media(const std::string& path) {
 
 double ratio_of(AVRational ratio) { return ratio.num > 0 && ratio.den > 0 ? av_q2d(ratio) : 0; }
 
-// What decoded pixels mean.
-struct PixelKind {
-  int width = 0, height = 0, format = 0;
-  AVColorSpace colour_space = AVCOL_SPC_UNSPECIFIED;
-  AVColorRange range = AVCOL_RANGE_UNSPECIFIED;
-  bool operator==(const PixelKind&) const = default;
-};
-
 class VideoFile : public FrameSource {
  public:
   explicit VideoFile(std::string name)
-      : name_(std::move(name)), packet_(av_packet_alloc()), decoded_(av_frame_alloc()), converted_(av_frame_alloc()) {}
+      : name_(std::move(name)), packet_(av_packet_alloc()), decoded_(av_frame_alloc()) {}
 
   Result<void> rewind() override {
     if (Result<void> opened = open(); !opened) return opened;
@@ -176,9 +168,9 @@ class VideoFile : public FrameSource {
       warnings_.push_back(fmt::format("{}: interlaced; one field of each picture is used", name_));
     }
     told_interlaced_ = told_interlaced_ || is_interlaced;
-    if (const Result<void> done = convert(frame); !done) return done.failure();
-    cv::Mat stored(converted_->height, converted_->width, CV_8UC3, converted_->data[0],
-                   static_cast<size_t>(converted_->linesize[0]));
+    Result<cv::Mat> converted = converter_.convert(frame);
+    if (!converted) return error("{}: {}", name_, converted.error().message);
+    cv::Mat& stored = *converted;
     if (is_interlaced && stored.rows > 1) keep_one_field(stored, frame.top_field_first != 0);
     Picture shown{.image = shown_picture(stored, pixel_aspect_, turn_), .time_ns = time_of(frame)};
     ++num_given_;
@@ -226,49 +218,6 @@ class VideoFile : public FrameSource {
     }
   }
 
-  // Decoded pixels to 8-bit B, G, R, by the frame's own colour matrix and range.
-  Result<void> convert(const AVFrame& frame) {
-    if (converted_->width != frame.width || converted_->height != frame.height) {
-      av_frame_unref(converted_.get());
-      converted_->format = AV_PIX_FMT_BGR24;
-      converted_->width = frame.width;
-      converted_->height = frame.height;
-      if (static_cast<uint64_t>(frame.width) * static_cast<uint64_t>(frame.height) > kMostPixels) {
-        return error("{}: {}x{} are more pixels than the {} that can be handled", name_, frame.width, frame.height,
-                     kMostPixels);
-      }
-      // Not straight into an image: the scaler writes past a row's end unless rows are aligned.
-      if (av_frame_get_buffer(converted_.get(), 0) < 0) {
-        return error("{}: no memory for a picture of {}x{}", name_, frame.width, frame.height);
-      }
-    }
-    if (const PixelKind kind{frame.width, frame.height, frame.format, frame.colorspace, frame.color_range};
-        !scaler_ || kind != kind_) {
-      if (!make_scaler(kind)) return error("{}: pictures of an unknown kind", name_);
-    }
-    if (sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, converted_->data, converted_->linesize) <
-        0) {
-      return error("{}: a picture cannot be converted", name_);
-    }
-    return {};
-  }
-
-  bool make_scaler(const PixelKind& kind) {
-    kind_ = kind;
-    scaler_.reset(sws_getContext(kind.width, kind.height, static_cast<AVPixelFormat>(kind.format), kind.width,
-                                 kind.height, AV_PIX_FMT_BGR24, SWS_BICUBIC, nullptr, nullptr, nullptr));
-    if (!scaler_) return false;
-    int *of_source = nullptr, *of_target = nullptr, source_range = 0, range = 0, brightness = 0, contrast = 0,
-        saturation = 0;
-    if (sws_getColorspaceDetails(scaler_.get(), &of_source, &source_range, &of_target, &range, &brightness, &contrast,
-                                 &saturation) >= 0) {
-      const bool is_full = source_range != 0 || kind.range == AVCOL_RANGE_JPEG;
-      sws_setColorspaceDetails(scaler_.get(), sws_getCoefficients(kind.colour_space), is_full ? 1 : 0, of_target, range,
-                               brightness, contrast, saturation);
-    }
-    return true;
-  }
-
   // Since the first picture. Where a constant rate explains the stamp within the container's rounding, exactly that.
   [[nodiscard]] std::optional<int64_t> time_of(const AVFrame& frame) const {
     if (!first_pts_ || frame.best_effort_timestamp == AV_NOPTS_VALUE) return std::nullopt;
@@ -298,14 +247,13 @@ class VideoFile : public FrameSource {
   InputHandle input_;
   CodecHandle decoder_;
   PacketHandle packet_;
-  FrameHandle decoded_, converted_;
-  ScalerHandle scaler_;  // of kind_
-  PixelKind kind_;
+  FrameHandle decoded_;
+  PixelConverter converter_;
   const AVStream* stream_ = nullptr;  // input_'s
   std::optional<int64_t> counted_;    // pictures, where the container does not say
   double mean_fps_ = 0;               // of those counted
   double fps_ = 0, pixel_aspect_ = 1;
-  double end_s_ = 0;  // of what was read, in the file's time
+  double end_s_ = 0;      // of what was read, in the file's time
   bool is_even_ = false;  // at that rate
   Turn turn_;
   std::optional<int64_t> first_pts_;

@@ -1,0 +1,32 @@
+// PixelConverter: a decoded picture, of any depth and colour, to 8-bit B, G, R by its own colour matrix and range.
+// Based on: FFmpeg's libswscale.
+// Threads: one thread per converter.
+#pragma once
+
+#include <opencv2/core.hpp>
+
+#include "silpose/base/result.h"
+#include "silpose/image/ffmpeg.h"
+
+namespace silpose {
+
+class PixelConverter {
+ public:
+  // [H, W, 3] It stands until the next call. Errors: too large, no memory, pixels of an unknown kind.
+  Result<cv::Mat> convert(const AVFrame& frame);
+
+ private:
+  struct Kind {
+    int width = 0, height = 0, format = 0;
+    AVColorSpace colour_space = AVCOL_SPC_UNSPECIFIED;
+    AVColorRange range = AVCOL_RANGE_UNSPECIFIED;
+    bool operator==(const Kind&) const = default;
+  };
+  Result<void> prepare(const Kind& kind);
+
+  Kind kind_;            // of what the others are made for
+  ScalerHandle scaler_;  // none: nothing yet
+  FrameHandle converted_;
+};
+
+}  // namespace silpose
