@@ -131,7 +131,7 @@ std::vector<std::string> Video::warnings() const {
     const std::vector<std::string> own = camera.source->warnings();
     all.insert(all.end(), own.begin(), own.end());
   }
-  if (100 * impl_->num_mistimed > impl_->num_given) {
+  if (impl_->num_mistimed > 1 && 100 * impl_->num_mistimed > impl_->num_given) {
     all.push_back(
         fmt::format("{}: {} of its {} frames carry no time, or none after the frame before; put {:.4f} s after it",
                     name(), impl_->num_mistimed, impl_->num_given, 1 / fps()));

@@ -108,16 +108,17 @@ class VideoFile : public FrameSource {
 
   // Reads the file through without decoding it: what it does not say of itself. The stream ends with it.
   void count() {
-    int64_t packets = 0, first = INT64_MAX, last = INT64_MIN;
+    int64_t packets = 0, timed = 0, first = INT64_MAX, last = INT64_MIN;
     for (; av_read_frame(input_.get(), packet_.get()) >= 0; av_packet_unref(packet_.get())) {
       if (packet_->stream_index != stream_->index || (packet_->flags & AV_PKT_FLAG_DISCARD) != 0) continue;
       ++packets;
       if (packet_->pts == AV_NOPTS_VALUE) continue;
+      ++timed;
       first = std::min(first, packet_->pts);
       last = std::max(last, packet_->pts);
     }
     counted_ = packets;
-    if (packets > 1 && last > first) {
+    if (timed == packets && last > first) {
       mean_fps_ = static_cast<double>(packets - 1) / (static_cast<double>(last - first) * av_q2d(stream_->time_base));
     }
   }
