@@ -39,7 +39,7 @@ void film(const std::filesystem::path& folder) {
     const BoardFilm scene(camera);
     VideoWriter video = create_video(folder / (camera.name + ".mp4"), camera.width, camera.height, 25).value();
     for (const Rigid3& place : places) video.write(scene.picture(kBoard, place, rng)).value();
-    video.close();
+    video.close().value();
   }
   write_cameras(folder / "truth.toml", cameras).value();
 }
