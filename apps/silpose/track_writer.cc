@@ -65,12 +65,12 @@ void TrackWriter::set_fitted_body(std::shared_ptr<const BodyModel> body) {
 
 Result<void> TrackWriter::finish(const TrackRecording& recording) {
   if (overlay_) {
-    if (const Result<void> closed = overlay_->close(); !closed) return closed;
+    if (Result<void> closed = overlay_->close(); !closed) return closed;
   }
-  const Result<void> kept = write_cameras(directory_ / "camera.toml", cameras_);
+  Result<void> kept = write_cameras(directory_ / "camera.toml", cameras_);
   if (!kept || recording.steps.empty()) return kept;
   if (is_fitted_) {
-    const Result<void> written = write_body(directory_ / kFittedBodyFile, *body_);
+    Result<void> written = write_body(directory_ / kFittedBodyFile, *body_);
     if (!written) return written;
   }
   const Skeleton& skeleton = body_->skeleton;

@@ -65,8 +65,9 @@ std::vector<BoneMass> bone_masses(const BodyModel& body) {
   for (size_t i = 0; i < columns.size(); ++i) {
     std::vector<Crossing>& crossings = columns[i];
     std::ranges::sort(crossings, {}, &Crossing::z);
-    const double x = lowest.x() + (static_cast<double>(i % static_cast<size_t>(width)) + 0.4931) * side;
-    const double y = lowest.y() + (static_cast<double>(i / static_cast<size_t>(width)) + 0.5077) * side;
+    const size_t row = i / static_cast<size_t>(width), col = i % static_cast<size_t>(width);
+    const double x = lowest.x() + (static_cast<double>(col) + 0.4931) * side;
+    const double y = lowest.y() + (static_cast<double>(row) + 0.5077) * side;
     for (size_t k = 0; k + 1 < crossings.size(); k += 2) {
       const double half = (crossings[k + 1].z - crossings[k].z) / 2;
       for (const auto& [joint_idx, z] : {std::pair(crossings[k].joint_idx, crossings[k].z + half / 2),

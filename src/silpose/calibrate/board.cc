@@ -93,6 +93,7 @@ std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& picture,
   }
   order_corners(grey, board, corners);
   std::vector<Eigen::Vector2d> pixels;
+  pixels.reserve(corners.size());
   for (const cv::Point2f& corner : corners) pixels.emplace_back(corner.x + kPixelCentre, corner.y + kPixelCentre);
   return pixels;
 }

@@ -31,6 +31,7 @@ double rms_of(const Bundle& bundle, const std::vector<Eigen::Vector3d>& points, 
 Bundle without_outliers(const Bundle& bundle, const std::vector<Eigen::Vector3d>& points, double harmless,
                         size_t kept_place, std::vector<BundleView>& views, std::map<int64_t, size_t>& place_of) {
   std::vector<double> errors;
+  errors.reserve(views.size());
   for (const BundleView& view : views) errors.push_back(rms_of(bundle, points, view));
   std::vector<double> sorted = errors;
   std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());

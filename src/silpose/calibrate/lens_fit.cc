@@ -24,6 +24,7 @@ std::vector<cv::Point3f> object_points(const Board& board) {
 
 std::vector<cv::Point2f> image_points(const std::vector<Eigen::Vector2d>& corners) {
   std::vector<cv::Point2f> points;
+  points.reserve(corners.size());
   for (const Eigen::Vector2d& corner : corners) {
     points.emplace_back(static_cast<float>(corner.x()), static_cast<float>(corner.y()));
   }
@@ -34,6 +35,7 @@ std::vector<cv::Point2f> image_points(const std::vector<Eigen::Vector2d>& corner
 Result<LensFit> calibrate_views(const Board& board, const CameraSightings& camera, std::vector<size_t> views,
                                 std::vector<double>& view_rms) {
   std::vector<std::vector<cv::Point2f>> pixels;
+  pixels.reserve(views.size());
   for (const size_t view : views) pixels.push_back(image_points(camera.sightings[view].corners));
   const std::vector<std::vector<cv::Point3f>> points(views.size(), object_points(board));
   cv::Mat matrix, distortion, deviations;

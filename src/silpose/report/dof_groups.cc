@@ -11,7 +11,7 @@ constexpr size_t kMostJoints = 8;  // of a group
 // Chains of joints that have DOF, from one fork of such joints to the next.
 class Chains {
  public:
-  explicit Chains(const Skeleton& skeleton) : skeleton_(skeleton) {
+  explicit Chains(const Skeleton& skeleton) {
     const auto count = static_cast<size_t>(skeleton.num_joints());
     children_.resize(count);
     moves_.resize(count);
@@ -52,7 +52,6 @@ class Chains {
     for (const size_t child : children_[joint]) follow(child);
   }
 
-  const Skeleton& skeleton_;
   std::vector<bool> moves_;
   std::vector<size_t> roots_;
   std::vector<std::vector<size_t>> children_, chains_;

@@ -29,7 +29,7 @@ std::vector<Eigen::VectorXd> poses_of(std::span<const StartingPose> starts) {
 }  // namespace
 
 FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
-                           std::shared_ptr<const CoverageLikelihood> coarse,
+                           const std::shared_ptr<const CoverageLikelihood>& coarse,
                            std::shared_ptr<const Plausibility> plausibility)
     : fine_(fine),
       mixture_(std::move(fine), coarse, std::move(plausibility), mixture_options(options)),
@@ -53,7 +53,7 @@ FilterReport FittedFilter::step(std::span<const Observation> observations, doubl
   evidence.set_noise(noise_);
   mixture_.step(evidence, dt_s);
   update_noise(evidence);
-  const FilterReport stepped = report();
+  FilterReport stepped = report();
   CoverageLikelihood::Scratch scratch(body_error_.likelihood());
   from_body_ = body_error_.variance(evidence, estimate(), scratch);
   seconds.likelihood += stopwatch.seconds();

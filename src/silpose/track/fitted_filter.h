@@ -17,7 +17,8 @@ class FittedFilter final : public PoseFilter {
  public:
   // `options` are resolved.
   FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
-               std::shared_ptr<const CoverageLikelihood> coarse, std::shared_ptr<const Plausibility> plausibility);
+               const std::shared_ptr<const CoverageLikelihood>& coarse,
+               std::shared_ptr<const Plausibility> plausibility);
 
   void start(std::span<const StartingPose> starts) override;
   void add(std::span<const StartingPose> starts) override;

@@ -6,6 +6,13 @@
 #include "silpose/render/silhouette.h"
 
 namespace silpose {
+namespace {
+
+// Every pixel keeps half of its say: where an outline is doubted altogether, a fit goes to where it need not explain
+// it.
+constexpr int kLeastSure = 128;
+
+}  // namespace
 
 Observation observation_from(Segmentation segmentation) {
   Observation observation;
@@ -16,6 +23,7 @@ Observation observation_from(Segmentation segmentation) {
                        .area_jumped = segmentation.area_jumped};
   observation.mask = std::move(segmentation.mask);
   observation.confidence = std::move(segmentation.confidence);
+  for (uint8_t& sure : observation.confidence.pixels()) sure = static_cast<uint8_t>(kLeastSure + sure / 2);
   return observation;
 }
 
