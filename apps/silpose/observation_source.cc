@@ -217,6 +217,10 @@ Result<std::optional<Instant>> ObservationSource::next() {
       if (Console::interrupted()) return std::optional<Instant>();
       continue;
     }
+    for (const Observation& seen : instant.observations) {
+      num_seen_ += seen.trust.nothing_found ? 0 : 1;
+      num_cut_ += seen.trust.touches_border ? 1 : 0;
+    }
     instant.frame = std::move(**frame);
     instant.segment_s = segment_s;
     instant.decode_s = decoding.seconds() - segment_s;
@@ -255,6 +259,12 @@ std::vector<std::string> ObservationSource::warnings() const {
   for (const auto& segmenter : segmenters_) {
     const std::vector<std::string> own = segmenter->warnings();
     all.insert(all.end(), own.begin(), own.end());
+  }
+  if (2 * num_cut_ > num_seen_) {
+    all.push_back(
+        fmt::format("{}: the subject reaches the edge of the picture in {:.0f} % of the masks; a whole body is "
+                    "assumed, and what lies outside is guessed",
+                    video_->name(), 100.0 * static_cast<double>(num_cut_) / static_cast<double>(num_seen_)));
   }
   const std::vector<std::string> of_video = video_->warnings();
   all.insert(all.end(), of_video.begin(), of_video.end());

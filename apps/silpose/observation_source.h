@@ -65,6 +65,7 @@ class ObservationSource {
   std::unique_ptr<Video> video_;
   std::vector<std::unique_ptr<Segmenter>> segmenters_;
   std::vector<std::string> warnings_;
+  int64_t num_seen_ = 0, num_cut_ = 0;  // masks with a subject, and of these at the edge of the picture
   double learning_s_ = 0;
   int64_t start_ns_ = 0, end_ns_ = 0;  // of the stretch that --start and --end choose
 };

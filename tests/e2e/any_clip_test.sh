@@ -33,6 +33,13 @@ cmp -s even/poses.csv turned/poses.csv || fail "a turned clip has other poses"
 "$silpose" track truth/video.mp4 --camera truth/camera.toml --background turned.mp4 --particles 10 --layers 1 --end 0.6 \
   --out plate --quiet || fail "a turned plate is refused"
 
+# Who is never whole in the picture is told of.
+"$silpose" synth --out small --motion static --frames 3 --size 160x120 --quiet
+"$silpose" segment small/masks --segmenter masks --grow 64 --out masks_cut --json --quiet >cut.json 2>/dev/null ||
+  fail "a subject at the edge: exit $?"
+grep -q 'reaches the edge of the picture in 100 %' cut.json || fail "nothing says that the subject is cut off"
+grep -q 'reaches the edge' masks_even.json && fail "the clip as it is: said to be cut off"
+
 # Every fifth frame dropped, time stamps from 1 s on: times are the clip's own from its first frame, also of the overlay,
 # and the poses are those of these times.
 "$clip_tool" uneven truth/video.mp4 uneven.mkv
