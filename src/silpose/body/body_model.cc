@@ -72,6 +72,17 @@ std::vector<Eigen::Vector3f> skin_vertices(const BodyModel& body, std::span<cons
   return vertices;
 }
 
+std::vector<int> main_joints(const BodyModel& body) {
+  std::vector<int> joints;
+  joints.reserve(body.rest.vertices.size());
+  const auto weights = body.skin.weight.begin();
+  for (size_t v = 0; v < body.rest.vertices.size(); ++v) {
+    const auto most = std::max_element(weights + body.skin.row_start[v], weights + body.skin.row_start[v + 1]);
+    joints.push_back(body.skin.joint_idx[static_cast<size_t>(most - weights)]);
+  }
+  return joints;
+}
+
 std::vector<std::string> landmark_names(const BodyModel& body) {
   std::vector<std::string> names;
   for (const Joint& joint : body.skeleton.joints()) names.push_back(joint.name);

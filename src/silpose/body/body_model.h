@@ -22,18 +22,22 @@ namespace silpose {
 
 // Skin weights by vertex in compressed rows: those of vertex v are entries [row_start[v], row_start[v + 1]).
 struct SkinWeights {
-  std::vector<uint32_t> row_start;   // [V + 1]
-  std::vector<uint16_t> joint_idx;   // ascending within a vertex
-  std::vector<float> weight;         // positive, sums to 1 for each vertex
+  std::vector<uint32_t> row_start;  // [V + 1]
+  std::vector<uint16_t> joint_idx;  // ascending within a vertex
+  std::vector<float> weight;        // positive, sums to 1 for each vertex
 };
 
 struct BodyModel {
-  std::string name;                          // "human:age=25,sex=f,height=1.620,weight=58.0"
+  std::string name;  // "human:age=25,sex=f,height=1.620,weight=58.0"
   Skeleton skeleton;
-  Mesh rest;                                 // rest pose, metres, floor at y = 0
+  Mesh rest;  // rest pose, metres, floor at y = 0
   SkinWeights skin;
-  std::vector<Rigid3> joint_from_rest;       // [J]
-  struct EndPoint { std::string name; int joint_idx; Eigen::Vector3d offset_in_joint; };
+  std::vector<Rigid3> joint_from_rest;  // [J]
+  struct EndPoint {
+    std::string name;
+    int joint_idx;
+    Eigen::Vector3d offset_in_joint;
+  };
   std::vector<EndPoint> end_points;          // fixed to a joint; human: head_top, {right,left}_toe_tip, _finger_tip
   double height_m = 0, weight_kg = 0;        // stature and mass of the rest mesh
   std::map<std::string, std::string> facts;  // how it was built: sliders, source data, its hash
@@ -43,6 +47,9 @@ struct BodyModel {
 void skin_vertices(const BodyModel& body, std::span<const double> pose, std::span<Rigid3> world_from_joint,
                    std::span<Eigen::Vector3f> vertices);
 [[nodiscard]] std::vector<Eigen::Vector3f> skin_vertices(const BodyModel& body, std::span<const double> pose);
+
+// [V] index of the joint that has most of each vertex's weight; the first of equals.
+[[nodiscard]] std::vector<int> main_joints(const BodyModel& body);
 
 // Joint centres in joint order, then end points: names and positions [J + E] in world coordinates.
 [[nodiscard]] std::vector<std::string> landmark_names(const BodyModel& body);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 #include "silpose/base/parallel.h"
 
@@ -18,12 +19,9 @@ constexpr double kApart = 0.7;        // of a radius: sphere centres of one bone
 // [J] the vertices of each bone.
 std::vector<std::vector<uint32_t>> vertices_by_joint(const BodyModel& body) {
   std::vector<std::vector<uint32_t>> by_joint(body.skeleton.joints().size());
+  const std::vector<int> main_joint = main_joints(body);
   for (uint32_t v = 0; v < body.rest.vertices.size(); ++v) {
-    uint32_t most = body.skin.row_start[v];
-    for (uint32_t i = most; i < body.skin.row_start[v + 1]; ++i) {
-      if (body.skin.weight[i] > body.skin.weight[most]) most = i;
-    }
-    by_joint[body.skin.joint_idx[most]].push_back(v);
+    by_joint[static_cast<size_t>(main_joint[v])].push_back(v);
   }
   return by_joint;
 }
@@ -75,6 +73,14 @@ std::vector<FleshSphere> spheres_of_joint(const BodyModel& body, int joint_idx, 
   return kept;
 }
 
+// Where a column of the rest mesh, along z, crosses the skin.
+struct Crossing {
+  float z = 0;
+  int joint_idx = 0;
+};
+constexpr int kColumns = 200;                                 // along the body's greatest extent
+constexpr double kOffMiddleX = 0.4931, kOffMiddleY = 0.5077;  // of a column: no edge of a symmetric mesh lies there
+
 }  // namespace
 
 std::vector<FleshSphere> flesh_spheres(const BodyModel& body) {
@@ -110,6 +116,62 @@ std::vector<SkinPoint> outermost_points(const BodyModel& body) {
     }
   }
   return points;
+}
+
+std::vector<std::optional<Eigen::Vector3d>> flesh_centres(const BodyModel& body) {
+  const std::vector<Eigen::Vector3f>& vertices = body.rest.vertices;
+  Eigen::Vector3f lowest = vertices.front(), highest = vertices.front();
+  for (const Eigen::Vector3f& x : vertices) lowest = lowest.cwiseMin(x), highest = highest.cwiseMax(x);
+  const float side = (highest - lowest).maxCoeff() / kColumns;
+  const int width = static_cast<int>((highest.x() - lowest.x()) / side) + 1;
+  const int height = static_cast<int>((highest.y() - lowest.y()) / side) + 1;
+
+  const std::vector<int> joint_of = main_joints(body);
+  std::vector<std::vector<Crossing>> columns(static_cast<size_t>(width) * static_cast<size_t>(height));
+  for (const Face& face : body.rest.faces) {
+    const Eigen::Vector3f &a = vertices[face[0]], &b = vertices[face[1]], &c = vertices[face[2]];
+    const float area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
+    if (area == 0) continue;
+    const auto column = [&](float x, float from) { return static_cast<int>(std::floor((x - from) / side)); };
+    const auto [left, right] = std::minmax({a.x(), b.x(), c.x()});
+    const auto [bottom, top] = std::minmax({a.y(), b.y(), c.y()});
+    for (int row = column(bottom, lowest.y()); row <= std::min(column(top, lowest.y()), height - 1); ++row) {
+      for (int col = column(left, lowest.x()); col <= std::min(column(right, lowest.x()), width - 1); ++col) {
+        const float x = lowest.x() + (static_cast<float>(col) + static_cast<float>(kOffMiddleX)) * side;
+        const float y = lowest.y() + (static_cast<float>(row) + static_cast<float>(kOffMiddleY)) * side;
+        const float of_b = ((x - a.x()) * (c.y() - a.y()) - (y - a.y()) * (c.x() - a.x())) / area;
+        const float of_c = ((b.x() - a.x()) * (y - a.y()) - (b.y() - a.y()) * (x - a.x())) / area;
+        if (of_b < 0 || of_c < 0 || of_b + of_c > 1) continue;
+        const size_t nearest = of_b > 0.5f ? 1 : of_c > 0.5f ? 2 : 0;
+        columns[static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(col)].push_back(
+            {a.z() + of_b * (b.z() - a.z()) + of_c * (c.z() - a.z()), joint_of[face[nearest]]});
+      }
+    }
+  }
+
+  const size_t J = body.skeleton.joints().size();
+  std::vector<double> mass(J, 0);
+  std::vector<Eigen::Vector3d> moment(J, Eigen::Vector3d::Zero());
+  for (size_t i = 0; i < columns.size(); ++i) {
+    std::vector<Crossing>& crossings = columns[i];
+    std::ranges::sort(crossings, {}, &Crossing::z);
+    const size_t row = i / static_cast<size_t>(width), col = i % static_cast<size_t>(width);
+    const double x = lowest.x() + (static_cast<double>(col) + kOffMiddleX) * side;
+    const double y = lowest.y() + (static_cast<double>(row) + kOffMiddleY) * side;
+    for (size_t k = 0; k + 1 < crossings.size(); k += 2) {
+      const double half = (crossings[k + 1].z - crossings[k].z) / 2;
+      for (const auto& [joint_idx, z] : {std::pair(crossings[k].joint_idx, crossings[k].z + half / 2),
+                                         std::pair(crossings[k + 1].joint_idx, crossings[k + 1].z - half / 2)}) {
+        mass[static_cast<size_t>(joint_idx)] += half;
+        moment[static_cast<size_t>(joint_idx)] += half * Eigen::Vector3d(x, y, z);
+      }
+    }
+  }
+  std::vector<std::optional<Eigen::Vector3d>> centres(J);
+  for (size_t j = 0; j < J; ++j) {
+    if (mass[j] > 0) centres[j] = body.joint_from_rest[j] * (moment[j] / mass[j]);
+  }
+  return centres;
 }
 
 }  // namespace silpose

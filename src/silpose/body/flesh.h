@@ -1,10 +1,11 @@
 // Flesh: which room a body takes, coarsely, for any skeleton: spheres inside its skin, each fixed to a bone, and the
-// points of every bone that reach furthest out. A vertex is of the bone that has most of its weight.
+// points of every bone that reach furthest out. A vertex is of its main joint's bone.
 // Source: largest empty balls that touch the skin (references.bib: ma2012).
 // Threads: functions without state; uses all cores and gives the same result on any number.
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "silpose/body/body_model.h"
@@ -19,6 +20,10 @@ struct FleshSphere {
 
 // Ordered by joint, then by size; a few a bone. Bones without vertices have none.
 [[nodiscard]] std::vector<FleshSphere> flesh_spheres(const BodyModel& body);
+
+// [J] The middle of each bone's flesh (of the volume, in the rest pose), in its joint's frame; nothing where a bone has
+// none. From columns of the closed mesh, each halved between the bones it enters and leaves at.
+[[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> flesh_centres(const BodyModel& body);
 
 struct SkinPoint {
   int joint_idx = 0;

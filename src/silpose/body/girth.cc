@@ -1,10 +1,10 @@
 #include "silpose/body/girth.h"
 
 #include <algorithm>
-#include <string_view>
+#include <utility>
 
 #include "silpose/base/check.h"
-#include "silpose/body/bone_mass.h"
+#include "silpose/body/flesh.h"
 
 namespace silpose {
 namespace {
@@ -13,80 +13,56 @@ using Eigen::Vector3d;
 
 constexpr double kWhole = 0.06, kGroup = 0.06;  // deviations
 
-// The middle line of a bone's flesh in the rest pose.
-struct Line {
-  Vector3d point = Vector3d::Zero(), direction = Vector3d::UnitY();
-  bool has_flesh = false;
-};
-
-// Towards the joints below; of a last joint, towards the middle of its flesh.
-Line middle_line(const BodyModel& body, const BoneMass& bone) {
-  const auto joints = body.skeleton.joints();
+// Along a bone: towards the joints below; of a last joint, towards the middle of its flesh.
+Vector3d along_bone(const Skeleton& skeleton, size_t joint_idx, const Vector3d& flesh_centre) {
   Vector3d along = Vector3d::Zero();
-  for (const Joint& joint : joints) {
-    if (joint.parent_idx == bone.joint_idx) along += joint.offset_in_parent;
+  for (const Joint& joint : skeleton.joints()) {
+    if (joint.parent_idx == static_cast<int>(joint_idx)) along += joint.offset_in_parent;
   }
-  if (along.norm() < 1e-6) along = bone.centre_in_joint;
-  if (along.norm() < 1e-6) along = Vector3d::UnitY();
-  const Rigid3 rest_from_joint = body.joint_from_rest[static_cast<size_t>(bone.joint_idx)].inverse();
-  return {rest_from_joint * bone.centre_in_joint, rest_from_joint.rotation * along.normalized(), true};
-}
-
-// Name of the group of each joint [J], and whether it has flesh.
-std::vector<std::string> groups_of(const BodyModel& body, const std::vector<BoneMass>& masses) {
-  std::vector<std::string> groups(body.skeleton.joints().size());
-  for (const BoneMass& bone : masses) {
-    const auto j = static_cast<size_t>(bone.joint_idx);
-    groups[j] = without_side(body.skeleton.joints()[j].name);
-  }
-  return groups;
-}
-
-std::vector<std::string> names_of(const std::vector<std::string>& groups) {
-  std::vector<std::string> names;
-  for (const std::string& group : groups) {
-    if (!group.empty() && std::ranges::find(names, group) == names.end()) names.push_back(group);
-  }
-  return names;
+  if (along.norm() < 1e-6) along = flesh_centre;
+  return along.norm() < 1e-6 ? Vector3d::UnitY() : along.normalized();
 }
 
 }  // namespace
 
-std::vector<std::string> girth_names(const BodyModel& body) { return names_of(groups_of(body, bone_masses(body))); }
+Girths::Girths(BodyModel body) : body_(std::move(body)), volume_(volume(body_.rest)) {
+  const auto centres = flesh_centres(body_);
+  bones_.resize(centres.size());
+  for (size_t j = 0; j < centres.size(); ++j) {
+    if (!centres[j]) continue;
+    const Rigid3 rest_from_joint = body_.joint_from_rest[j].inverse();
+    const std::string name(without_side(body_.skeleton.joints()[j].name));
+    const auto group = std::ranges::find(names_, name) - names_.begin();
+    if (group == std::ssize(names_)) names_.push_back(name);
+    bones_[j] = {rest_from_joint * *centres[j], rest_from_joint.rotation * along_bone(body_.skeleton, j, *centres[j]),
+                 static_cast<int>(group)};
+  }
+}
 
-Eigen::MatrixXd girth_covariance(size_t num_girths) {
-  const auto G = static_cast<Eigen::Index>(num_girths);
+Eigen::MatrixXd Girths::covariance() const {
+  const auto G = std::ssize(names_);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Constant(G, G, kWhole * kWhole);
   covariance.diagonal().array() += kGroup * kGroup;
   return covariance;
 }
 
-BodyModel with_girths(const BodyModel& body, std::span<const double> girths) {
-  const std::vector<BoneMass> masses = bone_masses(body);
-  const std::vector<std::string> groups = groups_of(body, masses), names = names_of(groups);
-  check(girths.size() == names.size(), "with_girths: {} girths for {} groups of bones", girths.size(), names.size());
-  for (const double girth : girths) check(girth > -1, "with_girths: a girth of {}", girth);
-  std::vector<Line> lines(groups.size());
-  std::vector<double> girth_of(groups.size(), 0);
-  for (const BoneMass& bone : masses) {
-    const auto j = static_cast<size_t>(bone.joint_idx);
-    lines[j] = middle_line(body, bone);
-    girth_of[j] = girths[static_cast<size_t>(std::ranges::find(names, groups[j]) - names.begin())];
-  }
-  BodyModel out = body;
-  for (size_t v = 0; v < body.rest.vertices.size(); ++v) {
-    const Vector3d x = body.rest.vertices[v].cast<double>();
+BodyModel Girths::applied(std::span<const double> girths) const {
+  check(girths.size() == names_.size(), "Girths: {} girths for {} groups of bones", girths.size(), names_.size());
+  for (const double girth : girths) check(girth > -1, "Girths: a girth of {}", girth);
+  BodyModel out = body_;
+  for (size_t v = 0; v < body_.rest.vertices.size(); ++v) {
+    const Vector3d x = body_.rest.vertices[v].cast<double>();
     Vector3d moved = x;
-    for (uint32_t i = body.skin.row_start[v]; i < body.skin.row_start[v + 1]; ++i) {
-      const size_t j = body.skin.joint_idx[i];
-      const Vector3d off = x - lines[j].point;
-      moved += static_cast<double>(body.skin.weight[i]) * girth_of[j] *
-               (off - off.dot(lines[j].direction) * lines[j].direction);
+    for (uint32_t i = body_.skin.row_start[v]; i < body_.skin.row_start[v + 1]; ++i) {
+      const Bone& bone = bones_[body_.skin.joint_idx[i]];
+      if (bone.group < 0) continue;
+      const Vector3d off = x - bone.point;
+      moved += static_cast<double>(body_.skin.weight[i]) * girths[static_cast<size_t>(bone.group)] *
+               (off - off.dot(bone.direction) * bone.direction);
     }
     out.rest.vertices[v] = moved.cast<float>();
   }
-  const double before = volume(body.rest);
-  if (before > 0) out.weight_kg *= volume(out.rest) / before;
+  if (volume_ > 0) out.weight_kg *= volume(out.rest) / volume_;
   return out;
 }
 

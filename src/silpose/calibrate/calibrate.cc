@@ -5,6 +5,7 @@
 #include <set>
 
 #include "silpose/base/check.h"
+#include "silpose/base/median.h"
 #include "silpose/calibrate/rig.h"
 
 namespace silpose {
@@ -33,9 +34,7 @@ Bundle without_outliers(const Bundle& bundle, const std::vector<Eigen::Vector3d>
   std::vector<double> errors;
   errors.reserve(views.size());
   for (const BundleView& view : views) errors.push_back(rms_of(bundle, points, view));
-  std::vector<double> sorted = errors;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double limit = std::max(harmless, kOutlier * sorted[sorted.size() / 2]);
+  const double limit = std::max(harmless, kOutlier * upper_median(errors));
 
   Bundle result{.cameras = bundle.cameras};
   std::vector<BundleView> kept;

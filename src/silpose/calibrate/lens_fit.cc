@@ -5,14 +5,15 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
+#include "silpose/base/median.h"
+
 namespace silpose {
 namespace {
 
 constexpr size_t kMostViews = 40;
 constexpr size_t kFewestViews = 4;
-constexpr double kNearestViews = 0.02;  // of the picture's width
-constexpr double kOutlier = 3;          // a view's error against the median one's that makes it suspect
-constexpr double kHarmless = 0.3;       // pixels: no view with less is
+constexpr double kOutlier = 3;     // a view's error against the median one's that makes it suspect
+constexpr double kHarmless = 0.3;  // pixels: no view with less is
 
 std::vector<cv::Point3f> object_points(const Board& board) {
   std::vector<cv::Point3f> points;
@@ -105,9 +106,7 @@ Result<LensFit> fit_lens(const Board& board, const CameraSightings& camera) {
   if (!fit) return fit;
 
   // A view that fits far worse than most was moved during its exposure, or found wrongly: once more without it.
-  std::vector<double> sorted = view_rms;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const double limit = std::max(kHarmless, kOutlier * sorted[sorted.size() / 2]);
+  const double limit = std::max(kHarmless, kOutlier * upper_median(view_rms));
   std::vector<size_t> kept;
   for (size_t i = 0; i < views.size(); ++i) {
     if (view_rms[i] <= limit) kept.push_back(views[i]);

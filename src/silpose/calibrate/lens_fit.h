@@ -12,6 +12,8 @@
 
 namespace silpose {
 
+inline constexpr double kNearestViews = 0.02;  // of the picture's width: views that are nearer tell the same
+
 // Views that differ from each other most, as indices in ascending order: at most `most`, no two nearer than `nearest`.
 // `features`: a vector a view; their Euclidean distance is how different two are. The first chosen is the first view.
 // Source: farthest-point selection (references.bib: gonzalez1985).

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <utility>
+
+#include "silpose/base/median.h"
 
 namespace silpose {
 namespace {
 
 constexpr size_t kMostShared = 20;
-constexpr double kNearestViews = 0.02;  // of the picture's width
 
 // Which of the shared instants' ideas of where b stands, seen from a, fits all of them best: the one with the smallest
 // median distance of corners in a's pictures. One board seen head-on or at a slant it is mistaken for cannot spoil it.
@@ -32,8 +34,7 @@ Rigid3 a_from_b(const Board& board, const PinholeCamera& camera_a, const SeenBoa
       }
       errors.push_back(sum);
     }
-    std::nth_element(errors.begin(), errors.begin() + errors.size() / 2, errors.end());
-    const double error_of_candidate = errors[errors.size() / 2];
+    const double error_of_candidate = upper_median(std::move(errors));
     if (error_of_candidate < least) least = error_of_candidate, best = pose;
   }
   return best;

@@ -15,7 +15,6 @@ namespace silpose {
 // Axes are exchanged first, then mirrored. All quarter turns and their mirror images are of this form.
 struct Turn {
   bool swaps_axes = false, mirrors_x = false, mirrors_y = false;
-  [[nodiscard]] bool is_none() const { return !swaps_axes && !mirrors_x && !mirrors_y; }
 };
 
 // Of the display matrix of MP4 and QuickTime (x right, y down; 3x3, row by row, as FFmpeg's libavutil/display.h gives

@@ -43,13 +43,6 @@ std::vector<int> foot_of_joints(const Skeleton& skeleton) {
   return foot_of;
 }
 
-// The joint that moves a vertex most.
-int main_joint(const SkinWeights& skin, size_t vertex) {
-  const auto begin = skin.weight.begin() + skin.row_start[vertex],
-             end = skin.weight.begin() + skin.row_start[vertex + 1];
-  return skin.joint_idx[static_cast<size_t>(std::max_element(begin, end) - skin.weight.begin())];
-}
-
 Eigen::Vector3d on_floor(const Eigen::Vector2d& xz) { return {xz.x(), 0, xz.y()}; }
 
 }  // namespace
@@ -88,9 +81,10 @@ void draw_floor(ByteImage& picture, const PinholeCamera& camera, const Eigen::Ve
 std::vector<Footprint> footprints(const BodyModel& body, std::span<const double> pose) {
   const std::vector<int> foot_of = foot_of_joints(body.skeleton);
   const std::vector<Eigen::Vector3f> vertices = skin_vertices(body, pose);
+  const std::vector<int> main_joint = main_joints(body);
   std::vector<std::vector<Eigen::Vector3f>> points(foot_of.size());  // by foot
   for (size_t v = 0; v < vertices.size(); ++v) {
-    const int foot = foot_of[static_cast<size_t>(main_joint(body.skin, v))];
+    const int foot = foot_of[static_cast<size_t>(main_joint[v])];
     if (foot >= 0) points[static_cast<size_t>(foot)].push_back(vertices[v]);
   }
   std::vector<Footprint> result;

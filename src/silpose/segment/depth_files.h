@@ -13,6 +13,8 @@
 
 namespace silpose {
 
+inline constexpr size_t kDepthSamples = 40;  // that a background is learned from
+
 // Number i belongs to picture number i + offset.
 struct DepthFiles {
   std::string name;

@@ -9,7 +9,6 @@
 namespace silpose {
 namespace {
 
-constexpr size_t kMaxSamples = 40;
 constexpr double kLittleMoves = 0.002;  // of the picture
 
 class DepthSegmenter : public Segmenter {
@@ -19,7 +18,7 @@ class DepthSegmenter : public Segmenter {
 
   Result<void> learn(ProgressSink* progress) {
     // Of a range nothing is to be learned, but the first one has to fit.
-    const Result<std::vector<DepthImage>> samples = depth_.samples(range_ ? 1 : kMaxSamples, progress);
+    const Result<std::vector<DepthImage>> samples = depth_.samples(range_ ? 1 : kDepthSamples, progress);
     if (!samples) return samples.failure();
     if (range_) return {};
     background_ = learn_depth_background(*samples);

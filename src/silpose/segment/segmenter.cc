@@ -15,7 +15,6 @@
 namespace silpose {
 namespace {
 
-constexpr size_t kDepthSamples = 40;
 // Fractions of the picture (or the region) from which a warning is due.
 constexpr double kMuchHalfCovered = 0.002, kLittleMoves = 0.002;
 

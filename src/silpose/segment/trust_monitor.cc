@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "silpose/base/median.h"
+
 namespace silpose {
 namespace {
 
@@ -10,12 +12,6 @@ namespace {
 constexpr size_t kWindow = 15, kLeast = 5;
 constexpr double kMaxGrowth = 1.5;
 constexpr double kTrustAtBorder = 0.5, kTrustAfterJump = 0.25;
-
-int64_t median(std::vector<int64_t> values) {
-  const auto middle = values.begin() + static_cast<ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -28,7 +24,8 @@ Segmentation TrustMonitor::judge(Mask mask, ByteImage confidence) {
                                        box.y + box.height == mask.height());
   if (area > 0) {
     if (recent_areas_.size() >= kLeast) {
-      const auto usual = static_cast<double>(median({recent_areas_.begin(), recent_areas_.end()}));
+      const auto usual =
+          static_cast<double>(upper_median(std::vector<int64_t>(recent_areas_.begin(), recent_areas_.end())));
       const double ratio = static_cast<double>(area) / usual;
       result.area_jumped = ratio > kMaxGrowth || ratio < 1 / kMaxGrowth;
     }

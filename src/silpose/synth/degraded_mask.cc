@@ -51,12 +51,7 @@ double height_in_picture(const SyntheticSequence& sequence, const PinholeCamera&
 
 // By face the joint that moves most of it.
 std::vector<int> joint_of_faces(const BodyModel& body) {
-  std::vector<int> joint_of_vertex;
-  for (size_t v = 0; v < body.rest.vertices.size(); ++v) {
-    const auto begin = body.skin.weight.begin();
-    const auto largest = std::max_element(begin + body.skin.row_start[v], begin + body.skin.row_start[v + 1]);
-    joint_of_vertex.push_back(body.skin.joint_idx[static_cast<size_t>(largest - begin)]);
-  }
+  const std::vector<int> joint_of_vertex = main_joints(body);
   std::vector<int> joints;
   for (const Face& face : body.rest.faces) {
     const int a = joint_of_vertex[face[0]], b = joint_of_vertex[face[1]], c = joint_of_vertex[face[2]];

@@ -9,6 +9,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/levenberg.h"
+#include "silpose/base/median.h"
 #include "silpose/base/parallel.h"
 #include "silpose/body/girth.h"
 #include "silpose/body/stretchable.h"
@@ -94,9 +95,7 @@ class Problem {
     std::vector<double> noise;
     for (std::vector<double>& of_camera : found) {
       if (of_camera.empty()) of_camera.push_back(CoverageLikelihood::kExactNoise);
-      const auto middle = of_camera.begin() + std::ssize(of_camera) / 2;
-      std::ranges::nth_element(of_camera, middle);
-      noise.push_back(*middle);
+      noise.push_back(upper_median(std::move(of_camera)));
     }
     for (CoverageEvidence& one : evidence_) one.set_noise(noise);
   }
@@ -208,10 +207,10 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
 
   const BodyModel bare = stretchable(level_of_detail(*body, kVertices));
   const std::vector<int> shape = shape_dofs(bare.skeleton);
-  const std::vector<std::string> girth_groups = girth_names(bare);
+  const Girths girths_of(bare);
   const auto S = std::ssize(shape);
   Point at{{VectorXd::Zero(S), {}}, {}};
-  GirthFit girths{VectorXd::Zero(std::ssize(girth_groups)), {}};
+  GirthFit girths{VectorXd::Zero(std::ssize(girths_of.names())), {}};
   std::vector<size_t> chosen;
   const size_t count = std::min(options.num_instants, usable.size());
   for (size_t i = 0; i < count; ++i) {
@@ -221,7 +220,7 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
   }
   std::vector<CoverageEvidence> evidence;
   for (int round = 0; round < kRounds; ++round) {
-    const auto stretched = std::make_shared<const BodyModel>(with_girths(bare, view(girths.girths)));
+    const auto stretched = std::make_shared<const BodyModel>(girths_of.applied(view(girths.girths)));
     const CoverageLikelihood likelihood(stretched, cameras);
     if (evidence.empty()) {
       for (const size_t t : chosen) evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k4));
@@ -239,7 +238,7 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
       });
     }
     if (round + 1 < kRounds) {
-      girths = fit_girths(bare, cameras, evidence, at.unknowns.stretched_poses(), girths.girths, proceed);
+      girths = fit_girths(girths_of, cameras, evidence, at.unknowns.stretched_poses(), girths.girths, proceed);
     }
   }
   BodyFit fit;
@@ -247,11 +246,11 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
   const MatrixXd covariance = Problem::reduce(at.equations, 0).hessian.inverse();
   for (Eigen::Index s = 0; s < S; ++s) fit.deviations.push_back(std::sqrt(std::max(covariance(s, s), 0.0)));
   for (const int d : shape) fit.names.push_back(bare.skeleton.dofs()[static_cast<size_t>(d)].name);
-  for (size_t g = 0; g < girth_groups.size(); ++g) {
+  for (size_t g = 0; g < girths_of.names().size(); ++g) {
     const auto idx = static_cast<Eigen::Index>(g);
-    fit.girths.push_back({girth_groups[g], girths.girths[idx], girths.deviations[idx]});
+    fit.girths.push_back({girths_of.names()[g], girths.girths[idx], girths.deviations[idx]});
   }
-  BodyModel fitted = with_lengths(with_girths(*body, view(girths.girths)), fit.lengths);
+  BodyModel fitted = with_lengths(Girths(*body).applied(view(girths.girths)), fit.lengths);
   fitted.name += ",fitted";
   for (size_t s = 0; s < fit.names.size(); ++s) {
     fitted.facts[fit.names[s]] = fmt::format("{:+.4f} m", fit.lengths[s]);

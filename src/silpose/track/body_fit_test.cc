@@ -76,7 +76,7 @@ TEST_F(BodyFitTest, NeedsTwoCamerasThatSeeTheSubject) {
 }
 
 TEST_F(BodyFitTest, FindsHowThickTheSubjectIs) {
-  const BodyModel thicker = with_girths(subject_, std::vector<double>(3, 0.08));
+  const BodyModel thicker = Girths(subject_).applied(std::vector<double>(3, 0.08));
   for (int t = 0; t < 6; ++t) {
     for (size_t c = 0; c < 2; ++c) {
       Observation& observation = clip_[static_cast<size_t>(t)].observations[c];

@@ -3,10 +3,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
-#include "silpose/body/girth.h"
 #include "silpose/track/pose_fit.h"
 
 namespace silpose {
@@ -20,16 +20,16 @@ constexpr Blur kBlur = Blur::k4;
 
 class Cost {
  public:
-  Cost(const BodyModel& body, const std::vector<PinholeCamera>& cameras, std::span<const CoverageEvidence> evidence,
+  Cost(const Girths& girths, const std::vector<PinholeCamera>& cameras, std::span<const CoverageEvidence> evidence,
        std::span<const VectorXd> poses)
-      : body_(body),
+      : of_body_(girths),
         cameras_(cameras),
         evidence_(evidence),
         poses_(poses),
-        information_(girth_covariance(girth_names(body).size()).inverse()) {}
+        information_(girths.covariance().inverse()) {}
 
   [[nodiscard]] double operator()(const VectorXd& girths) const {
-    const auto shaped = std::make_shared<const BodyModel>(with_girths(body_, view(girths)));
+    const auto shaped = std::make_shared<const BodyModel>(of_body_.applied(view(girths)));
     const CoverageLikelihood likelihood(shaped, cameras_);
     std::vector<double> energies(poses_.size());
     parallel_for(poses_.size(), 1, [&](size_t begin, size_t end) {
@@ -44,7 +44,7 @@ class Cost {
   }
 
  private:
-  const BodyModel& body_;
+  const Girths& of_body_;
   const std::vector<PinholeCamera>& cameras_;
   std::span<const CoverageEvidence> evidence_;
   std::span<const VectorXd> poses_;
@@ -53,11 +53,11 @@ class Cost {
 
 }  // namespace
 
-GirthFit fit_girths(const BodyModel& body, const std::vector<PinholeCamera>& cameras,
+GirthFit fit_girths(const Girths& girths, const std::vector<PinholeCamera>& cameras,
                     std::span<const CoverageEvidence> evidence, std::span<const VectorXd> poses, const VectorXd& start,
                     const std::function<bool()>& proceed) {
   check(evidence.size() == poses.size(), "fit_girths: {} poses of {} instants", poses.size(), evidence.size());
-  const Cost cost(body, cameras, evidence, poses);
+  const Cost cost(girths, cameras, evidence, poses);
   GirthFit fit{start, VectorXd::Zero(start.size())};
   double here = cost(fit.girths);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {

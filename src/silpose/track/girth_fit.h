@@ -5,11 +5,10 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <memory>
 #include <span>
 #include <vector>
 
-#include "silpose/body/body_model.h"
+#include "silpose/body/girth.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 
 namespace silpose {
@@ -19,8 +18,8 @@ struct GirthFit {
   Eigen::VectorXd deviations;  // [G] of what is not known of them, all else given
 };
 
-// From `start` [G]. `poses` [T] of [D] are of `body`, which the evidence [T] is of.
-GirthFit fit_girths(const BodyModel& body, const std::vector<PinholeCamera>& cameras,
+// From `start` [G]. `poses` [T] of [D] are of the girths' body; evidence [T].
+GirthFit fit_girths(const Girths& girths, const std::vector<PinholeCamera>& cameras,
                     std::span<const CoverageEvidence> evidence, std::span<const Eigen::VectorXd> poses,
                     const Eigen::VectorXd& start, const std::function<bool()>& proceed = {});
 

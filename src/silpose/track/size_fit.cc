@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "silpose/base/median.h"
 #include "silpose/body/flesh.h"
 #include "silpose/body/point_motion.h"
 
@@ -10,12 +11,6 @@ namespace silpose {
 namespace {
 
 constexpr double kLowestCamera = 0.2;  // metres above the floor: below, the floor is seen too slantwise to tell
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 }  // namespace
 
@@ -35,9 +30,9 @@ std::optional<SizeFit> fit_size(const BodyModel& body, const PinholeCamera& came
     if (camera_height - lowest > 0.05 * camera_height) factors.push_back(camera_height / (camera_height - lowest));
   }
   if (2 * factors.size() <= poses.size()) return std::nullopt;
-  const double factor = median_of(factors);
+  const double factor = upper_median(factors);
   for (double& one : factors) one = std::abs(one - factor);
-  return SizeFit{factor, 1.4826 * median_of(std::move(factors))};  // a normal deviation, robustly
+  return SizeFit{factor, 1.4826 * upper_median(std::move(factors))};  // a normal deviation, robustly
 }
 
 }  // namespace silpose
