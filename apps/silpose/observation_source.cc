@@ -254,6 +254,10 @@ std::string ObservationSource::background() const {
   return names;
 }
 
+bool ObservationSource::finds_landmarks() const {
+  return std::ranges::any_of(segmenters_, [](const auto& segmenter) { return segmenter->finds_landmarks(); });
+}
+
 std::vector<std::string> ObservationSource::warnings() const {
   std::vector<std::string> all = warnings_;
   for (const auto& segmenter : segmenters_) {

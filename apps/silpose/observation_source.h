@@ -56,6 +56,7 @@ class ObservationSource {
   // How many instants next() will give, where that is known; 0 otherwise.
   [[nodiscard]] int64_t num_expected() const;
   [[nodiscard]] std::string background() const;                    // "background auto", "masks", ... of each camera
+  [[nodiscard]] bool finds_landmarks() const;                      // of any camera
   [[nodiscard]] std::vector<std::string> warnings() const;         // whole only after the last next()
   [[nodiscard]] double learning_s() const { return learning_s_; }  // time spent before the first instant
 

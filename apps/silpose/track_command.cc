@@ -28,6 +28,10 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   TrackerOptions tracker = tracker_options(options, *body, cameras->cameras, common.seed);
   Result<ObservationSource> source = ObservationSource::open(options.input, console);
   if (!source) return source.failure();
+  if (options.init == "landmarks" && !source->finds_landmarks()) {
+    return error("--init landmarks: {} finds none; --segmenter learned does", source->background());
+  }
+  tracker.landmarks = (options.init == "auto" || options.init == "landmarks") && source->finds_landmarks();
 
   TrackWriter writer(directory->path(), *body, cameras->cameras, source->video().fps(), options.draw_floor);
   const Result<Tracked> tracked = track_video(options, std::move(tracker), *source, writer, console);

@@ -93,7 +93,9 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
                  "before the smoothing "
                  "take 2500)")
       ->check(CLI::Range(0, 1'000'000));
-  app.add_option("--init", options.init, "First pose: descent, or a poses.csv (its row of the first frame)")
+  app.add_option("--init", options.init,
+                 "First pose: descent; landmarks (the same, and it agrees with those that --segmenter learned finds); "
+                 "auto (landmarks where some are found); or a poses.csv (its row of the first frame)")
       ->capture_default_str();
   app.add_flag("--draw-floor", options.draw_floor,
                "Draw the floor y = 0 (1 m squares) and the footprints into the overlay: do camera and feet fit it?");
@@ -162,7 +164,8 @@ TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<cons
 
 Result<std::optional<std::vector<double>>> read_initial_pose(const TrackOptions& options, const Skeleton& skeleton,
                                                              int64_t frame) {
-  if (options.init == "descent") return std::optional<std::vector<double>>();
+  const std::string& init = options.init;
+  if (init == "auto" || init == "descent" || init == "landmarks") return std::optional<std::vector<double>>();
   const Result<PoseTable> table = read_poses(options.init, skeleton);
   if (!table) return table.failure();
   if (table->rows.empty()) return error("{}: no pose in it", options.init);

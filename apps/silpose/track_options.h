@@ -20,7 +20,7 @@ namespace silpose::app {
 struct TrackOptions {
   InputOptions input;
   CameraOptions camera;
-  std::string model = "human", out, config, init = "descent", root = "tracked";
+  std::string model = "human", out, config, init = "auto", root = "tracked";
   std::optional<std::string> metric, estimate;
   std::optional<double> resample_below;
   std::optional<bool> fit_body;

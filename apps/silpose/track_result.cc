@@ -83,6 +83,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run["frames_per_second"] = frames_per_second(tracked);
   run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
   run["background"] = told.source.background();
+  run["start_by_landmarks"] = tracked.used.landmarks;
   run["cameras"] = nlohmann::ordered_json::array();
   for (const PinholeCamera& camera : told.writer.cameras()) run["cameras"].push_back(camera.name);
   run["warnings"] = told.warnings;

@@ -153,6 +153,7 @@ expect_failure 1 'huge.csv.*1e300' "${masks[@]}" --init huge.csv
 expect_failure 1 'huge.csv.*1e300' render --pose huge.csv --out picture.png
 expect_failure 1 'nan.csv' "${masks[@]}" --init nan.csv
 expect_failure 1 'empty.csv' "${masks[@]}" --init empty.csv
+expect_failure 1 'init landmarks: masks finds none' "${masks[@]}" --init landmarks
 expect_failure 1 'absent.csv' render --pose absent.csv --out picture.png
 expect_failure '1|2' 'poses.csv:99' render --pose truth/poses.csv:99 --out picture.png
 expect_failure 1 'folder' evaluate --result folder --truth truth

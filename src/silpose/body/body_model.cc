@@ -101,6 +101,12 @@ std::vector<Eigen::Vector3d> landmark_positions(const BodyModel& body, std::span
   return positions;
 }
 
+double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b) {
+  double furthest = 0;
+  for (size_t i = 0; i < a.size(); ++i) furthest = std::max(furthest, (a[i] - b[i]).norm());
+  return furthest;
+}
+
 std::vector<double> standing_pose(const BodyModel& body) {
   std::vector<double> pose(body.skeleton.dofs().size(), 0.0);
   const std::optional<int> root_ty = body.skeleton.find_dof("root_ty");

@@ -59,7 +59,9 @@ class LearnedSegmenter : public Segmenter {
       mask = std::move(matte.mask);
     }
     forgive_edges(found.confidence, mask);
-    return monitor_.judge(grow(mask, clean_up_.grow_px), std::move(found.confidence));
+    Segmentation judged = monitor_.judge(grow(mask, clean_up_.grow_px), std::move(found.confidence));
+    judged.landmarks = std::move(found.landmarks);
+    return judged;
   }
 
   [[nodiscard]] std::vector<std::string> warnings() const override {
@@ -73,12 +75,14 @@ class LearnedSegmenter : public Segmenter {
       warnings.emplace_back("several people are in the picture; the largest is followed (--region helps)");
     return warnings;
   }
+  [[nodiscard]] bool finds_landmarks() const override { return true; }
   [[nodiscard]] std::string name() const override { return "learned"; }
 
  private:
   struct Found {
     Mask kept;             // [H, W] the person, empty where there is none
     ByteImage confidence;  // [H, W]
+    std::vector<SeenLandmark> landmarks = {};
   };
 
   // By the network alone; follows the person.
@@ -113,7 +117,10 @@ class LearnedSegmenter : public Segmenter {
       doubt_changes(found.confidence, person, found.kept);
     }
     square_.reset();
-    if (found.kept.count() > 0) square_ = reading->next_square();
+    if (found.kept.count() > 0) {
+      square_ = reading->next_square();
+      found.landmarks = reading->body_landmarks();
+    }
     num_without_ = square_ ? 0 : num_without_ + 1;
     return found;
   }

@@ -46,6 +46,22 @@ TEST(LearnedSegmenter, CutsOutARenderedPersonAndNobodyBefore) {
   EXPECT_THAT(learned->warnings(), IsEmpty());
 }
 
+TEST(LearnedSegmenter, FindsTheJointsWhereTheyAre) {
+  const auto learned = segmenter();
+  EXPECT_TRUE(learned->finds_landmarks());
+  EXPECT_THAT(learned->segment(ColourScene(sequence(), 0).draw(0), 0).value().landmarks, IsEmpty());
+  const Segmentation found = learned->segment(ColourScene(sequence(), 0).draw(4), 4).value();
+  ASSERT_EQ(found.landmarks.size(), 14u);
+  const auto names = landmark_names(*sequence().body);
+  const auto positions = landmark_positions(*sequence().body, pose_of_frame(sequence(), 4));
+  for (const SeenLandmark& seen : found.landmarks) {
+    const auto at = std::ranges::find(names, seen.name) - names.begin();
+    ASSERT_LT(at, std::ssize(names)) << seen.name;
+    const Eigen::Vector2d truth = sequence().cameras[0].project(positions[static_cast<size_t>(at)]).value();
+    EXPECT_LT(std::hypot(seen.x - truth.x(), seen.y - truth.y()), 0.08 * found.mask.bounding_box().height) << seen.name;
+  }
+}
+
 TEST(LearnedSegmenter, SaysWhenThePersonWasLost) {
   const ColourScene scene(sequence(), 0);
   const auto learned = segmenter();

@@ -62,6 +62,17 @@ PictureSquare PersonReading::next_square() const {
   return square_around(middle.x, middle.y, above.x, above.y);
 }
 
+std::vector<SeenLandmark> PersonReading::body_landmarks() const {
+  // Those of the face are no joints.
+  static constexpr std::pair<const char*, size_t> kOfBody[] = {
+      {"left_upper_arm", 11}, {"right_upper_arm", 12}, {"left_forearm", 13}, {"right_forearm", 14}, {"left_hand", 15},
+      {"right_hand", 16},     {"left_thigh", 23},      {"right_thigh", 24},  {"left_shin", 25},     {"right_shin", 26},
+      {"left_foot", 27},      {"right_foot", 28},      {"left_toe_tip", 31}, {"right_toe_tip", 32}};
+  std::vector<SeenLandmark> seen;
+  for (const auto& [name, i] : kOfBody) seen.push_back({name, landmarks[i].x, landmarks[i].y, landmarks[i].visibility});
+  return seen;
+}
+
 Image<float> PersonReading::logits_in_picture(int width, int height) const {
   return values_in_picture(mask_logits, kReadSize, square, width, height, -10);
 }

@@ -11,6 +11,7 @@
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
 #include "silpose/image/mask.h"
+#include "silpose/image/seen_landmark.h"
 #include "silpose/segment/picture_square.h"
 #include "silpose/segment/tflite_network.h"
 
@@ -32,6 +33,8 @@ struct PersonReading {
 
   // Where to look for the same person again.
   [[nodiscard]] PictureSquare next_square() const;
+  // Those that are joints, or end points, of the human, under its names.
+  [[nodiscard]] std::vector<SeenLandmark> body_landmarks() const;
   // [height, width]; far below 0 outside of the square.
   [[nodiscard]] Image<float> logits_in_picture(int width, int height) const;
 };

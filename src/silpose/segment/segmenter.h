@@ -13,6 +13,7 @@
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
 #include "silpose/image/mask.h"
+#include "silpose/image/seen_landmark.h"
 #include "silpose/segment/clean_up.h"
 #include "silpose/segment/depth_model.h"
 #include "silpose/segment/screen_model.h"
@@ -20,12 +21,13 @@
 namespace silpose {
 
 struct Segmentation {
-  Mask mask;                    // [H, W] the chosen blob
-  ByteImage confidence = {};    // [H, W] of each pixel, 255: sure; empty: sure everywhere
-  double trust = 1;             // 0: nothing to go by; 1: as good as a given mask
-  bool nothing_found = false;   // no blob counts
-  bool touches_border = false;  // part of the subject may be outside the picture
-  bool area_jumped = false;     // the area is far from the recent median
+  Mask mask;                                 // [H, W] the chosen blob
+  ByteImage confidence = {};                 // [H, W] of each pixel, 255: sure; empty: sure everywhere
+  std::vector<SeenLandmark> landmarks = {};  // where the segmenter knows of any
+  double trust = 1;                          // 0: nothing to go by; 1: as good as a given mask
+  bool nothing_found = false;                // no blob counts
+  bool touches_border = false;               // part of the subject may be outside the picture
+  bool area_jumped = false;                  // the area is far from the recent median
 };
 
 class Segmenter {
@@ -35,6 +37,9 @@ class Segmenter {
   // The mask of picture number `index` of the video, [H, W, 3] B, G, R. Indices rise from call to call and may skip.
   // Errors: the picture has another size than those learned from; given masks that end, break or have another size.
   virtual Result<Segmentation> segment(const ByteImage& image, int64_t index) = 0;
+
+  // Whether its masks come with landmarks.
+  [[nodiscard]] virtual bool finds_landmarks() const { return false; }
 
   // Pictures before this one serve to learn from and are not to be tracked.
   [[nodiscard]] virtual int64_t first_index() const { return 0; }

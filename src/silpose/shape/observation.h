@@ -2,7 +2,10 @@
 // it. Threads: a value.
 #pragma once
 
+#include <vector>
+
 #include "silpose/image/mask.h"
+#include "silpose/image/seen_landmark.h"
 
 namespace silpose {
 
@@ -14,9 +17,10 @@ struct Trust {
 };
 
 struct Observation {
-  Mask mask;  // whole image, the chosen blob
-  Box box;    // its bounding box
+  Mask mask;                  // whole image, the chosen blob
+  Box box;                    // its bounding box
   ByteImage confidence = {};  // of each pixel, 255: sure; empty: sure everywhere. Only the fitted filter looks at it.
+  std::vector<SeenLandmark> landmarks = {};  // of the body; none from most segmenters
   Trust trust;
 };
 

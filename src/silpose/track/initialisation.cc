@@ -10,6 +10,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/motion/landmark_match.h"
 #include "silpose/track/limb_search.h"
 #include "silpose/track/picture_moves.h"
 #include "silpose/track/place_on_mask.h"
@@ -31,6 +32,7 @@ constexpr double kTwoAtOnce = 0.3;  // share of the random limbs that come in pa
 // does an E, after as many rounds, that is far more than is left elsewhere.
 constexpr double kStaleCost = 0.97, kHopelessRatio = 5, kHopeless = 100;
 constexpr int kStaleRounds = 2, kPatience = 3;
+constexpr double kContradicted = 20;  // by landmarks, more than the best start
 
 // Loosely about a candidate: joints by half their range, the trunk's tilt by 20 degrees; where the body is, and which
 // way it faces, is free.
@@ -59,9 +61,27 @@ double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::spa
   return (root.rotation * Eigen::Vector3d::UnitZ()).dot((camera.centre_in_world() - root.translation).normalized());
 }
 
+std::vector<LandmarkMatch> match_landmarks(const BodyModel& body, std::span<const PinholeCamera> cameras,
+                                           std::span<const Observation> observations) {
+  std::vector<LandmarkMatch> matches;
+  for (size_t c = 0; c < observations.size(); ++c) {
+    LandmarkMatch match(body, cameras[c], observations[c]);
+    if (match.tells_pose()) matches.push_back(std::move(match));
+  }
+  return matches;
+}
+
+double cost_of(std::span<const LandmarkMatch> matches, std::span<const double> pose) {
+  double sum = 0;
+  for (const LandmarkMatch& match : matches) sum += match.cost(pose);
+  return sum;
+}
+
 struct Candidate {
   PosePrior prior;
   PoseFit fit;
+  double contradiction = 0;  // by landmarks, in units of cost
+  [[nodiscard]] double cost() const { return fit.cost() + contradiction; }
 };
 
 // What candidates are fitted to.
@@ -69,7 +89,9 @@ struct Sight {
   const CoverageLikelihood& likelihood;
   const Plausibility& plausibility;
   const CoverageEvidence& evidence;
-  Eigen::Vector3d eye;  // of the first camera with a say
+  Eigen::Vector3d eye;                   // of the first camera with a say
+  std::vector<LandmarkMatch> landmarks;  // of cameras whose landmarks count
+  double landmark_allowance;
 
   [[nodiscard]] const BodyModel& body() const { return likelihood.body(); }
 };
@@ -80,13 +102,13 @@ void fit_all(const Sight& sight, std::span<const FitStage> stages, std::vector<C
     for (size_t i = begin; i < end; ++i) {
       Candidate& c = candidates[i];
       c.fit = fit_pose(sight.likelihood, sight.plausibility, sight.evidence, c.prior, c.fit.pose, stages, {}, scratch);
+      if (sight.landmarks.empty()) continue;
+      c.contradiction = std::max(0.0, cost_of(sight.landmarks, view(c.fit.pose)) - sight.landmark_allowance);
     }
   });
 }
 
-void sort_best_first(std::vector<Candidate>& candidates) {
-  std::ranges::stable_sort(candidates, {}, [](const Candidate& c) { return c.fit.cost(); });
-}
+void sort_best_first(std::vector<Candidate>& candidates) { std::ranges::stable_sort(candidates, {}, &Candidate::cost); }
 
 Candidate candidate_at(const Skeleton& skeleton, std::span<const double> pose) {
   Candidate candidate;
@@ -180,17 +202,24 @@ void search_limbs(const Sight& sight, const InitialisationOptions& options, cons
     const double energy = starts.front().fit.energy;
     if (round > 0 && energy <= kExplained) return;
     if (round >= kStaleRounds && energy > std::max(kHopelessRatio * rounds.least, kHopeless)) return;
-    const double before = starts.front().fit.cost();
+    const double before = starts.front().cost();
     const auto stream = rounds.index * static_cast<uint64_t>(options.num_rounds) + static_cast<uint64_t>(round);
     std::vector<Candidate> variants = promising_variants(sight, starts, options, stream);
     fit_all(sight, kVariantStages, variants);
     std::ranges::move(variants, std::back_inserter(starts));
     keep();
-    stale = starts.front().fit.cost() > kStaleCost * before ? stale + 1 : 0;
+    stale = starts.front().cost() > kStaleCost * before ? stale + 1 : 0;
   }
 }
 
 }  // namespace
+
+std::optional<double> landmark_cost(const BodyModel& body, std::span<const PinholeCamera> cameras,
+                                    std::span<const Observation> observations, std::span<const double> pose) {
+  const std::vector<LandmarkMatch> matches = match_landmarks(body, cameras, observations);
+  if (matches.empty()) return std::nullopt;
+  return cost_of(matches, pose);
+}
 
 std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
                                      std::span<const Observation> observations, const StateBatch& candidates,
@@ -208,7 +237,9 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   for (size_t k = 0; k < starts.size(); ++k) {
     starts[k] = candidate_at(skeleton, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
   }
-  const Sight sight{likelihood, plausibility, evidence, camera.centre_in_world()};
+  Sight sight{likelihood, plausibility, evidence, camera.centre_in_world(), {}, options.landmark_allowance.value_or(0)};
+  if (options.landmark_allowance) sight.landmarks = match_landmarks(body, likelihood.cameras(), observations);
+  const double facing_bonus = sight.landmarks.empty() ? options.facing_bonus : 0;
   fit_all(sight, kCoarseStages, starts);
   sort_best_first(starts);
   std::array<int, 8> taken{};
@@ -251,21 +282,24 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   uint64_t index = headings.size();
   search_limbs(sight, options, {index++, least, kPatience}, starts);
   for (int round = 0; round < kDistantRounds && starts.front().fit.energy > kExplained; ++round) {
-    const double before = starts.front().fit.cost();
+    const double before = starts.front().cost();
     std::vector<Candidate> distant = distant_variants(sight, starts, options, index);
     if (distant.empty()) break;
     search_limbs(sight, options, {index++, starts.front().fit.energy, kStaleRounds}, distant);
     std::ranges::move(distant, std::back_inserter(starts));
     search_limbs(sight, options, {index++, starts.front().fit.energy, kPatience}, starts);
-    if (starts.front().fit.cost() > kStaleCost * before) break;
+    if (starts.front().cost() > kStaleCost * before) break;
   }
 
   noise = likelihood.estimate_noise(evidence, view(starts.front().fit.pose), scratch);
   set_noise(likelihood, noise, evidence, starts, scratch);
   const auto log_likelihood = [&](const Candidate& c) {
-    return -0.5 * c.fit.cost() + options.facing_bonus * faces_camera(body, camera, view(c.fit.pose));
+    return -0.5 * c.cost() + facing_bonus * faces_camera(body, camera, view(c.fit.pose));
   };
   std::ranges::stable_sort(starts, std::greater<>{}, log_likelihood);
+  // The filter goes by silhouettes alone: what they like as well and landmarks contradict must not be among it.
+  const double worst = starts.front().contradiction + kContradicted;
+  std::erase_if(starts, [&](const Candidate& c) { return c.contradiction > worst; });
   std::vector<StartingPose> best;
   best.reserve(starts.size());
   for (const Candidate& start : starts) {

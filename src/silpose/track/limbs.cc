@@ -167,12 +167,6 @@ std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Li
   return variants;
 }
 
-double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b) {
-  double furthest = 0;
-  for (size_t i = 0; i < a.size(); ++i) furthest = std::max(furthest, (a[i] - b[i]).norm());
-  return furthest;
-}
-
 std::optional<int> turning_dof(const Skeleton& skeleton) {
   for (const int d : skeleton.joints().front().dof_indices) {
     const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];

@@ -57,9 +57,6 @@ struct LimbVariant {
 std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Limb> limbs, std::span<const double> pose,
                                        const Eigen::Vector3d& eye, int num_random, double two_at_once, Rng& rng);
 
-// How far the joint or end point that is furthest off is off, metres. Shapes: landmarks [J + E] of two poses.
-double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b);
-
 // The DOF by which the body turns about the vertical: the outermost rotation of the root, if that is its axis.
 std::optional<int> turning_dof(const Skeleton& skeleton);
 

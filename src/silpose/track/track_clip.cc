@@ -7,7 +7,6 @@
 
 #include "silpose/base/clock.h"
 #include "silpose/base/parallel.h"
-#include "silpose/motion/common_poses.h"
 #include "silpose/motion/noise.h"
 #include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
@@ -105,19 +104,20 @@ class ClipTracker {
       if (apart) starts.push_back(t);
       if (starts.size() == kNumStarts) break;
     }
-    const CommonPoses common(options_.body->skeleton);
-    const Proposal& proposal = options_.proposal ? *options_.proposal : common;
+    const std::shared_ptr<const Proposal> proposal = start_proposal(options_);
     // Passes start anew, so a coarse mesh will do to choose.
     const auto body = level_of_detail(options_.body, *options_of_pass(options_).lod_vertices);
     const CoverageLikelihood likelihood(body, options_.cameras);
     const Plausibility plausibility(body, *options_.floor);
     double best = -std::numeric_limits<double>::infinity();
     size_t chosen = starts.front();
+    InitialisationOptions search{.seed = options_.seed};
+    if (options_.landmarks) search.landmark_allowance = 0;
     for (const size_t t : starts) {
       if (!proceed()) break;
       Rng rng(options_.seed, t);
       const auto found = initialise(likelihood, plausibility, clip_[t].observations,
-                                    proposal.propose(clip_[t].observations.front(), 0, rng), {.seed = options_.seed});
+                                    proposal->propose(clip_[t].observations.front(), 0, rng), search);
       if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
     }
     return chosen;

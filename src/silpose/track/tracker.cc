@@ -46,6 +46,7 @@ struct Tracker::Impl {
       }
     }
     filter = make_pose_filter(options, likelihoods);
+    for_start = start_proposal(options);
     if (!options.proposal) options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton);
   }
 
@@ -53,16 +54,23 @@ struct Tracker::Impl {
   std::vector<StartingPose> starting_poses(std::span<const Observation> observations) const {
     if (options.initial_pose && last_pose.empty()) return {{*options.initial_pose, 0}};
     Rng rng(options.seed, static_cast<uint64_t>(steps));
-    StateBatch candidates = options.proposal->propose(observations.front(), 0, rng);
+    const Proposal& proposal = started ? *options.proposal : *for_start;
+    StateBatch candidates = proposal.propose(observations.front(), 0, rng);
     if (!last_pose.empty()) {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
     InitialisationOptions search{.seed = options.seed + static_cast<uint64_t>(steps)};
+    if (options.landmarks) search.landmark_allowance = 0;
     if (started) {
       search.num_headings = kSeekHeadings;
       search.num_rounds = kSeekRounds;
       search.first_heading = kSeekHeadings * num_seeks;
+      // In some frame of a clip landmarks are wrong as a whole: they hinder what they contradict more than what is
+      // tracked, and no more.
+      if (options.landmarks) {
+        search.landmark_allowance = landmark_cost(*options.body, options.cameras, observations, last_pose);
+      }
     }
     return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, search);
   }
@@ -102,6 +110,7 @@ struct Tracker::Impl {
   TrackerOptions options;
   Likelihoods likelihoods;
   std::unique_ptr<PoseFilter> filter;
+  std::shared_ptr<const Proposal> for_start;
   std::vector<std::unique_ptr<Segmenter>> segmenters;  // online, one a camera; made when first needed
   std::vector<double> last_pose;
   bool started = false;

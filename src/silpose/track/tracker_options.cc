@@ -4,6 +4,8 @@
 
 #include "silpose/base/check.h"
 #include "silpose/filter/resampling.h"
+#include "silpose/motion/common_poses.h"
+#include "silpose/motion/landmark_proposal.h"
 #include "silpose/motion/motion_model.h"
 
 namespace silpose {
@@ -75,6 +77,12 @@ void TrackerOptions::check() const {
   const auto num_dofs = static_cast<size_t>(body->skeleton.num_dofs());
   require(!initial_pose || initial_pose->size() == num_dofs,
           fmt::format("initial pose of {} numbers for {} DOF", initial_pose ? initial_pose->size() : 0, num_dofs));
+}
+
+std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options) {
+  if (options.landmarks) return std::make_shared<const LandmarkProposal>(options.body, options.cameras.front());
+  if (options.proposal) return options.proposal;
+  return std::make_shared<const CommonPoses>(options.body->skeleton);
 }
 
 }  // namespace silpose

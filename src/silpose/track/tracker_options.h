@@ -38,6 +38,9 @@ struct TrackerOptions {
   std::optional<int> lod_vertices;  // of the mesh that is compared, smoothed clips: in the end; 0: the body's own
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
+  // Starts agree with the observations' landmarks where there are any, and what is sought anew no less than what was
+  // tracked; all else is by silhouettes alone.
+  bool landmarks = false;
   std::shared_ptr<const Proposal> proposal;  // candidates for the start and for regeneration; absent: common poses
 
   // Errors: throws std::invalid_argument that names the option and its value.
@@ -46,5 +49,8 @@ struct TrackerOptions {
   // The same with everything unset filled in from the preset.
   [[nodiscard]] TrackerOptions resolved() const;
 };
+
+// Candidates for the start: fitted to landmarks where these count, else the options' proposal, else the common poses.
+std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options);
 
 }  // namespace silpose

@@ -1,0 +1,123 @@
+#include "silpose/motion/landmark_match.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "silpose/base/rng.h"
+#include "silpose/body/human.h"
+#include "silpose/motion/landmark_proposal.h"
+
+namespace silpose {
+namespace {
+
+class LandmarkMatchTest : public testing::Test {
+ protected:
+  static std::shared_ptr<const BodyModel> human() {
+    static const auto body = std::make_shared<const BodyModel>(
+        build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value());
+    return body;
+  }
+
+  int dof(const char* name) const { return body_->skeleton.find_dof(name).value(); }
+
+  std::vector<double> standing(double heading) const {
+    std::vector<double> pose(static_cast<size_t>(body_->skeleton.num_dofs()), 0.0);
+    pose[static_cast<size_t>(dof("root_ty"))] = 0.95;
+    pose[static_cast<size_t>(dof("root_ry"))] = heading;
+    return pose;
+  }
+
+  // All joints and end points, off by a deviation of `noise_px`; a mask as large as the body.
+  Observation see(const std::vector<double>& pose, double noise_px = 0) const {
+    Observation seen{Mask(camera_.width, camera_.height)};
+    const auto names = landmark_names(*body_);
+    const auto positions = landmark_positions(*body_, pose);
+    Rng rng(3, 0, 0);
+    Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9);
+    for (size_t i = 0; i < names.size(); ++i) {
+      const Eigen::Vector2d pixel =
+          camera_.project(positions[i]).value() + noise_px * Eigen::Vector2d(rng.normal(), rng.normal());
+      seen.landmarks.push_back({names[i], pixel.x(), pixel.y()});
+      least = least.cwiseMin(pixel), most = most.cwiseMax(pixel);
+    }
+    const double height = most.y() - least.y();
+    seen.box = {static_cast<int>(least.x()), static_cast<int>(least.y()), static_cast<int>(most.x() - least.x()),
+                static_cast<int>(height)};
+    const int width = static_cast<int>(height / 10);  // of a box that covers a tenth of the height squared
+    const int middle = seen.box.x + seen.box.width / 2;
+    for (int y = seen.box.y; y < seen.box.y + seen.box.height; ++y) {
+      for (int x = middle - width / 2; x < middle - width / 2 + width; ++x) seen.mask.set(x, y);
+    }
+    return seen;
+  }
+
+  std::shared_ptr<const BodyModel> body_ = human();
+  PinholeCamera camera_ = default_camera(640, 480);
+};
+
+TEST_F(LandmarkMatchTest, DerivativeIsThatOfTheCost) {
+  std::vector<double> pose = standing(0.4);
+  const Observation seen = see(pose, 3);
+  const LandmarkMatch match(*body_, camera_, seen);
+  for (size_t d = 0; d < pose.size(); ++d) pose[d] += 0.02 * static_cast<double>(d % 5);
+  const Eigen::Index D = std::ssize(pose);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(D);
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(D, D);
+  EXPECT_NEAR(match.add(pose, gradient, hessian), match.cost(pose), 1e-9);
+  constexpr double kStep = 1e-6;
+  for (size_t d = 0; d < pose.size(); ++d) {
+    std::vector<double> more = pose, less = pose;
+    more[d] += kStep, less[d] -= kStep;
+    const double expected = (match.cost(more) - match.cost(less)) / (2 * kStep) / 2;  // add() gives that of half
+    EXPECT_NEAR(gradient[static_cast<Eigen::Index>(d)], expected, 1e-3 * (1 + std::abs(expected))) << d;
+  }
+}
+
+TEST_F(LandmarkMatchTest, FrontIsToldFromBackAndLeftFromRight) {
+  const std::vector<double> truth = standing(0);
+  const Observation seen = see(truth, 2);
+  const LandmarkMatch match(*body_, camera_, seen);
+  EXPECT_GT(match.cost(standing(kPi)), match.cost(truth) + 40);
+}
+
+TEST_F(LandmarkMatchTest, CountsOnlyWhatIsSeenAndTheBodyHas) {
+  Observation seen = see(standing(0));
+  const size_t all = LandmarkMatch(*body_, camera_, seen).size();
+  EXPECT_EQ(all, seen.landmarks.size());
+  seen.landmarks[0].visibility = 0.2;
+  seen.landmarks[1].x = -3;
+  seen.landmarks[2].name = "tail";
+  EXPECT_EQ(LandmarkMatch(*body_, camera_, seen).size(), all - 3);
+  seen.landmarks.resize(8);
+  EXPECT_FALSE(LandmarkMatch(*body_, camera_, seen).tells_pose());
+}
+
+TEST_F(LandmarkMatchTest, ProposesThePoseThatIsSeen) {
+  const LandmarkProposal proposal(body_, camera_);
+  for (const double heading : {0.3, 2.0, -1.2, 3.1}) {
+    std::vector<double> truth = standing(heading);
+    truth[static_cast<size_t>(dof("left_thigh_rx"))] = 0.9;
+    truth[static_cast<size_t>(dof("left_shin_rx"))] = 0.7;
+    truth[static_cast<size_t>(dof("right_upper_arm_rz"))] = 1.2;
+    Rng rng(1, 0, 0);
+    const StateBatch poses = proposal.propose(see(truth, 2), 0, rng);
+    ASSERT_GT(poses.rows(), 0);
+    EXPECT_LT(poses.rows(), 40);
+    const double facing = poses(0, dof("root_ry"));
+    EXPECT_GT(std::cos(facing - heading), 0.85) << heading;
+    EXPECT_NEAR(poses(0, dof("left_thigh_rx")), 0.9, 0.5) << heading;
+    EXPECT_EQ(proposal.propose(see(truth, 2), 2, rng).rows(), std::min<Eigen::Index>(2, poses.rows()));
+  }
+}
+
+TEST_F(LandmarkMatchTest, WithoutLandmarksTheCommonPosesAreProposed) {
+  Observation seen = see(standing(0));
+  seen.landmarks.clear();
+  Rng rng(1, 0, 0);
+  const StateBatch poses = LandmarkProposal(body_, camera_).propose(seen, 0, rng);
+  EXPECT_EQ(poses, CommonPoses(body_->skeleton).poses());
+}
+
+}  // namespace
+}  // namespace silpose

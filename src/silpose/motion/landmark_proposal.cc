@@ -1,0 +1,122 @@
+#include "silpose/motion/landmark_proposal.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "silpose/base/check.h"
+#include "silpose/base/levenberg.h"
+#include "silpose/base/parallel.h"
+#include "silpose/motion/landmark_match.h"
+#include "silpose/motion/noise.h"
+
+namespace silpose {
+namespace {
+
+constexpr int kMostIterations = 40;
+constexpr double kLongestTurn = 0.35, kLongestWay = 1;  // a step, radians and metres
+constexpr double kFarWorse = 25;                        // cost above the best of what is not proposed
+constexpr double kSamePose = 0.05;                      // metres
+
+struct Fit {
+  Eigen::VectorXd pose;
+  double sum = 0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd hessian;
+  [[nodiscard]] double cost() const { return sum; }
+};
+
+// How a pose agrees with the landmarks, and with how people hold themselves.
+class Problem {
+ public:
+  Problem(const BodyModel& body, const LandmarkMatch& match)
+      : skeleton_(body.skeleton), match_(match), deviation_(pose_deviation(body.skeleton)) {}
+
+  [[nodiscard]] Fit at(Eigen::VectorXd pose) const {
+    const Eigen::Index D = pose.size();
+    Fit fit{std::move(pose), 0, Eigen::VectorXd::Zero(D), Eigen::MatrixXd::Zero(D, D)};
+    fit.sum = match_.add({fit.pose.data(), static_cast<size_t>(D)}, fit.gradient, fit.hessian);
+    for (Eigen::Index d = 0; d < D; ++d) {
+      const double deviation = deviation_[static_cast<size_t>(d)];
+      if (deviation == 0) continue;
+      const double off = fit.pose[d] / deviation;
+      fit.sum += off * off;
+      fit.gradient[d] += off / deviation;
+      fit.hessian(d, d) += 1 / (deviation * deviation);
+    }
+    return fit;
+  }
+
+  [[nodiscard]] std::optional<Fit> step(const Fit& from, double damping) const {
+    Eigen::MatrixXd normal = from.hessian;
+    normal.diagonal() *= 1 + damping;
+    normal.diagonal().array() += 1e-6;
+    Eigen::VectorXd way = normal.ldlt().solve(-from.gradient);
+    if (!way.allFinite()) return std::nullopt;
+    double longest = 1;
+    for (Eigen::Index d = 0; d < way.size(); ++d) {
+      const Dof& dof = skeleton_.dofs()[static_cast<size_t>(d)];
+      longest = std::max(longest, std::abs(way[d]) / (dof.is_translation ? kLongestWay : kLongestTurn));
+    }
+    Eigen::VectorXd pose = from.pose + way / longest;
+    skeleton_.clamp({pose.data(), static_cast<size_t>(pose.size())});
+    return at(std::move(pose));
+  }
+
+ private:
+  const Skeleton& skeleton_;
+  const LandmarkMatch& match_;
+  std::vector<double> deviation_;
+};
+
+}  // namespace
+
+LandmarkProposal::LandmarkProposal(std::shared_ptr<const BodyModel> body, const PinholeCamera& camera)
+    : body_(std::move(body)), camera_(camera), common_(body_->skeleton) {}
+
+StateBatch LandmarkProposal::propose(const Observation& observation, int num_candidates, Rng& rng) const {
+  check(num_candidates >= 0, "LandmarkProposal: {} candidates", num_candidates);
+  const LandmarkMatch match(*body_, camera_, observation);
+  if (!match.tells_pose() || observation.box.empty()) return common_.propose(observation, num_candidates, rng);
+
+  // As far away as a body of that size is, in the middle of the mask.
+  const Box& box = observation.box;
+  const double depth = body_->height_m * camera_.fy / std::sqrt(10 * static_cast<double>(observation.mask.count()));
+  const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
+  const Eigen::Vector3d root =
+      camera_.cam_from_world.inverse() * Eigen::Vector3d(camera_.ray_from_pixel(middle) * depth);
+  const Problem problem(*body_, match);
+  const StateBatch& poses = common_.poses();
+  std::vector<Fit> fits(static_cast<size_t>(poses.rows()));
+  parallel_for(fits.size(), 4, [&](size_t begin, size_t end) {
+    for (size_t k = begin; k < end; ++k) {
+      Eigen::VectorXd pose = poses.row(static_cast<Eigen::Index>(k)).transpose();
+      for (int d = 0; d < body_->skeleton.num_dofs(); ++d) {
+        const Dof& dof = body_->skeleton.dofs()[static_cast<size_t>(d)];
+        if (dof.joint_idx == 0 && dof.is_translation) pose[d] = dof.axis.dot(root);
+      }
+      fits[k] = problem.at(std::move(pose));
+      descend(fits[k], kMostIterations, {1e-3, 1e-4},
+              [&](const Fit& from, double damping) { return problem.step(from, damping); });
+    }
+  });
+  std::ranges::stable_sort(fits, {}, &Fit::sum);
+  const double worst = fits.front().sum + kFarWorse;
+  std::vector<std::vector<Eigen::Vector3d>> kept;
+  std::erase_if(fits, [&](const Fit& fit) {
+    if (fit.sum > worst) return true;
+    auto x = landmark_positions(*body_, {fit.pose.data(), static_cast<size_t>(fit.pose.size())});
+    if (std::ranges::any_of(kept, [&](const auto& other) { return furthest_apart(x, other) < kSamePose; })) return true;
+    kept.push_back(std::move(x));
+    return false;
+  });
+  if (num_candidates > 0) fits.resize(std::min(fits.size(), static_cast<size_t>(num_candidates)));
+  StateBatch chosen(std::ssize(fits), poses.cols());
+  for (size_t k = 0; k < fits.size(); ++k) chosen.row(static_cast<Eigen::Index>(k)) = fits[k].pose.transpose();
+  return chosen;
+}
+
+}  // namespace silpose
