@@ -54,7 +54,7 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
   tracker.preset = "accurate";
   tracker.seed = common.seed;
   tracker.landmarks = source->finds_landmarks();
-  const std::optional<BodyFit> fit = fit_subject(tracker, *clip, console);
+  const std::optional<BodyFit> fit = fit_subject(tracker, *clip, poses_as_given(tracker, *clip, console), console);
   if (Console::interrupted()) return error("interrupted: nothing is written");
   if (!fit) return error("{}: no body fitted: {}", source->video().name(), why_not_fitted(cameras->cameras.size()));
 

@@ -8,7 +8,9 @@
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
+#include "silpose/base/check.h"
 #include "silpose/base/clock.h"
+#include "silpose/base/state_bytes.h"
 #include "silpose/image/image_file.h"
 #include "silpose/track/observe.h"
 
@@ -191,7 +193,29 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
   return source;
 }
 
-Result<std::optional<Instant>> ObservationSource::next() {
+Result<std::optional<Instant>> ObservationSource::next() { return read(true); }
+
+Result<std::optional<Frame>> ObservationSource::skip() {
+  Result<std::optional<Instant>> instant = read(false);
+  if (!instant) return instant.failure();
+  if (!instant->has_value()) return std::optional<Frame>();
+  return std::optional<Frame>(std::move((*instant)->frame));
+}
+
+std::string ObservationSource::state() const {
+  std::vector<std::string> of_segmenters;
+  for (const auto& segmenter : segmenters_) of_segmenters.push_back(segmenter->state());
+  return to_bytes(of_segmenters, num_seen_, num_cut_);
+}
+
+void ObservationSource::restore(std::string_view state) {
+  std::vector<std::string> of_segmenters;
+  check(from_bytes(state, of_segmenters, num_seen_, num_cut_) && of_segmenters.size() == segmenters_.size(),
+        "ObservationSource: not a state of it");
+  for (size_t camera = 0; camera < segmenters_.size(); ++camera) segmenters_[camera]->restore(of_segmenters[camera]);
+}
+
+Result<std::optional<Instant>> ObservationSource::read(bool segments) {
   const Stopwatch decoding;
   double segment_s = 0;
   for (;;) {
@@ -204,8 +228,7 @@ Result<std::optional<Instant>> ObservationSource::next() {
     }
     Instant instant;
     for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
-      // A background learned online has to see what goes before the first frame that is wanted.
-      if (!wanted && !segmenters_[camera]->name().starts_with("background online")) continue;
+      if (!(wanted && segments) && !segmenters_[camera]->sees_all()) continue;
       const Stopwatch segmenting;
       Result<Segmentation> segmentation =
           segmenters_[camera]->segment((*frame)->images[camera], video_->own_index(static_cast<int>(camera)));
@@ -217,7 +240,7 @@ Result<std::optional<Instant>> ObservationSource::next() {
       if (Console::interrupted()) return std::optional<Instant>();
       continue;
     }
-    for (const Observation& seen : instant.observations) {
+    for (const Observation& seen : instant.observations) {  // restore() makes it good where they are skipped
       num_seen_ += seen.trust.nothing_found ? 0 : 1;
       num_cut_ += seen.trust.touches_border ? 1 : 0;
     }

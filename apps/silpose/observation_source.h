@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/silpose/camera_choice.h"
@@ -50,6 +51,13 @@ class ObservationSource {
 
   // The next instant to be tracked, nothing at the end. Errors: those of the video and of the segmenter.
   Result<std::optional<Instant>> next();
+  // The same, without masks: only segmenters that must see every picture are shown it.
+  Result<std::optional<Frame>> skip();
+
+  // What next() carries on. Another source of the same options that skipped as many goes on from it as this one would.
+  // Errors: restore() throws std::invalid_argument for what is no such state.
+  [[nodiscard]] std::string state() const;
+  void restore(std::string_view state);
 
   [[nodiscard]] const Video& video() const { return *video_; }
   [[nodiscard]] std::vector<PictureSize> sizes() const;
@@ -62,6 +70,8 @@ class ObservationSource {
 
  private:
   ObservationSource() = default;
+  Result<std::optional<Instant>> read(bool segments);
+
   InputOptions options_;
   std::unique_ptr<Video> video_;
   std::vector<std::unique_ptr<Segmenter>> segmenters_;

@@ -91,27 +91,32 @@ Result<void> apply_option_file(const std::filesystem::path& file, CLI::App& comm
   return {};
 }
 
-Result<void> write_option_file(const std::filesystem::path& file, const CLI::App& command,
-                               const std::map<std::string, std::string>& chosen) {
-  std::ofstream stream(file);
-  stream << "# Options of silpose " << command.get_name() << "; give this file to --config.\n";
+OptionLines option_lines(const CLI::App& command, const std::map<std::string, std::string>& chosen) {
+  OptionLines lines;
   for (const CLI::Option* option : command.get_options()) {
     const std::string key = key_of(*option);
     if (std::find(kNotKept.begin(), kNotKept.end(), key) != kNotKept.end()) continue;
     const auto choice = chosen.find(key);
     if (choice != chosen.end()) {
-      stream << key << " = " << as_toml(choice->second) << "\n";
+      lines.emplace_back(key, as_toml(choice->second));
     } else if (option->count() > 0 && option->get_items_expected_max() > 1) {
-      stream << key << " = [";
-      const std::vector<std::string> values = option->results();
-      for (size_t i = 0; i < values.size(); ++i) stream << (i > 0 ? ", " : "") << as_toml(values[i]);
-      stream << "]\n";
+      std::string list;
+      for (const std::string& value : option->results()) list += (list.empty() ? "" : ", ") + as_toml(value);
+      lines.emplace_back(key, "[" + list + "]");
     } else if (option->count() > 0) {
-      stream << key << " = " << as_toml(option->results().back()) << "\n";
+      lines.emplace_back(key, as_toml(option->results().back()));
     } else if (!option->get_default_str().empty()) {
-      stream << key << " = " << as_toml(option->get_default_str()) << "\n";
+      lines.emplace_back(key, as_toml(option->get_default_str()));
     }
   }
+  return lines;
+}
+
+Result<void> write_option_file(const std::filesystem::path& file, const CLI::App& command,
+                               const std::map<std::string, std::string>& chosen) {
+  std::ofstream stream(file);
+  stream << "# Options of silpose " << command.get_name() << "; give this file to --config.\n";
+  for (const auto& [key, value] : option_lines(command, chosen)) stream << key << " = " << value << "\n";
   stream.flush();
   if (!stream) return error("{}: not writable", file.string());
   return {};

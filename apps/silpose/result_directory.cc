@@ -9,6 +9,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "apps/silpose/track_checkpoint.h"
 #include "apps/silpose/track_writer.h"
 
 namespace silpose::app {
@@ -17,10 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // Everything that track, synth and segment put into a directory.
-constexpr std::array<std::string_view, 15> kFiles = {
-    "poses.csv",   "poses_normalised.csv", "spread.csv", "joints.csv",  "camera.toml", "overlay.mp4",
-    "report.html", "config.toml",          "motion.bvh", "markers.trc", "motion.mot",  "motion.glb",
-    "run.json",    "video.mp4",            kFittedBodyFile};
+constexpr std::array<std::string_view, 16> kFiles = {
+    "poses.csv",     "poses_normalised.csv", "spread.csv",  "joints.csv", "camera.toml", "overlay.mp4", "report.html",
+    "config.toml",   "motion.bvh",           "markers.trc", "motion.mot", "motion.glb",  "run.json",    "video.mp4",
+    kFittedBodyFile, kCheckpointFile};
 
 bool is_mask_folder(const fs::path& folder) {
   std::error_code failed;
@@ -34,8 +35,12 @@ bool is_mask_folder(const fs::path& folder) {
 }
 
 bool is_own(const fs::directory_entry& entry) {
-  const std::string name = entry.path().filename().string();
-  if (entry.is_directory()) return (name == "masks" || name.starts_with("masks_")) && is_mask_folder(entry.path());
+  std::string name = entry.path().filename().string();
+  if (entry.is_directory()) {
+    const bool is_known = name == "masks" || name.starts_with("masks_") || name.starts_with(kConfidenceFolder);
+    return is_known && is_mask_folder(entry.path());
+  }
+  if (name.ends_with(".tmp")) name.resize(name.size() - 4);  // of a program that was killed (base/text_file.h)
   if (name.starts_with("video_") && name.ends_with(".mp4")) return true;
   return std::find(kFiles.begin(), kFiles.end(), name) != kFiles.end();
 }
@@ -61,7 +66,7 @@ std::optional<std::string> foreign_content(const fs::path& directory, bool must_
   return std::nullopt;
 }
 
-Result<ResultDirectory> ResultDirectory::create(const fs::path& directory) {
+Result<ResultDirectory> ResultDirectory::create(const fs::path& directory, bool resume) {
   ResultDirectory result;
   result.final_ = directory.has_filename() ? directory : directory.parent_path();  // "out/" is "out"
   if (result.final_.filename() == "." || result.final_.filename() == ".." || result.final_.filename().empty()) {
@@ -79,7 +84,8 @@ Result<ResultDirectory> ResultDirectory::create(const fs::path& directory) {
     if (foreign)
       return error("{}: holds something else than a result of silpose ({}); left alone", path.string(), *foreign);
   }
-  fs::remove_all(partial, failed);
+  result.stays_ = resume && fs::exists(partial / kCheckpointFile, failed);
+  if (!result.stays_) fs::remove_all(partial, failed);
   fs::create_directories(partial, failed);
   if (failed || access(partial.c_str(), W_OK) != 0) {
     return error("{}: not writable ({})", directory.string(), failed ? failed.message() : "permission denied");
@@ -110,7 +116,7 @@ Result<void> ResultDirectory::commit() {
 
 ResultDirectory::~ResultDirectory() {
   std::error_code ignored;
-  if (!partial_.empty()) fs::remove_all(partial_, ignored);
+  if (!partial_.empty() && !stays_) fs::remove_all(partial_, ignored);
 }
 
 Result<void> write_whole(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {

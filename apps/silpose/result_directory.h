@@ -15,8 +15,9 @@ namespace silpose::app {
 
 class ResultDirectory {
  public:
-  // Makes DIR.partial, empty. Errors: DIR is a file or holds something else; not writable.
-  static Result<ResultDirectory> create(const std::filesystem::path& directory);
+  // Makes DIR.partial, empty. With `resume` what is there stays, even where the work fails, if it can be gone on from.
+  // Errors: DIR is a file or holds something else; not writable.
+  static Result<ResultDirectory> create(const std::filesystem::path& directory, bool resume = false);
 
   // Where to write.
   [[nodiscard]] const std::filesystem::path& path() const { return partial_; }
@@ -32,6 +33,7 @@ class ResultDirectory {
   ResultDirectory& operator=(ResultDirectory&& other) noexcept {
     std::swap(final_, other.final_);
     std::swap(partial_, other.partial_);
+    std::swap(stays_, other.stays_);
     return *this;
   }
   ~ResultDirectory();
@@ -39,6 +41,7 @@ class ResultDirectory {
  private:
   ResultDirectory() = default;
   std::filesystem::path final_, partial_;  // partial_ is empty once it is renamed or kept
+  bool stays_ = false;                     // partial_ was there before
 };
 
 // Whether a finished result of silpose lies there.

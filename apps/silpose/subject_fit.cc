@@ -9,20 +9,25 @@ nlohmann::ordered_json figure(double mean, double std) { return {{"mean", mean},
 
 }  // namespace
 
-std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<const ClipInstant> clip, Console& console) {
-  const bool floor = *tracker.resolved().floor;
+std::vector<std::vector<double>> poses_as_given(const TrackerOptions& tracker, std::span<const ClipInstant> clip,
+                                                Console& console, const ClipResume& resume) {
   TrackerOptions pass = options_of_pass(tracker);
   if (tracker.cameras.size() == 1) pass.floor = false;
+  const auto progress = [&](size_t done, size_t total) {
+    return console.update("tracking the body as given", static_cast<int64_t>(done), static_cast<int64_t>(total));
+  };
   std::vector<std::vector<double>> poses;
-  for (const StepReport& report : track_clip(pass, clip, [&](size_t done, size_t total) {
-         return console.update("tracking the body as given", static_cast<int64_t>(done), static_cast<int64_t>(total));
-       })) {
-    poses.push_back(report.pose);
-  }
+  for (const StepReport& report : track_clip(pass, clip, progress, resume)) poses.push_back(report.pose);
+  return poses;
+}
+
+std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<const ClipInstant> clip,
+                                   std::span<const std::vector<double>> poses, Console& console) {
   if (Console::interrupted()) return std::nullopt;
   const auto total = static_cast<int64_t>(clip.size());
-  std::optional<BodyFit> fit = fit_body(tracker.body, tracker.cameras, clip, poses, {.floor = floor},
-                                        [&] { return console.update("fitting the body", total, total); });
+  std::optional<BodyFit> fit =
+      fit_body(tracker.body, tracker.cameras, clip, poses, {.floor = *tracker.resolved().floor},
+               [&] { return console.update("fitting the body", total, total); });
   return Console::interrupted() ? std::nullopt : std::move(fit);
 }
 

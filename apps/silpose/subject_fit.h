@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "apps/silpose/console.h"
 #include "silpose/track/body_fit.h"
@@ -13,9 +14,14 @@
 
 namespace silpose::app {
 
-// Tracks the clip online with the body as given, and fits that: bones and girths with several cameras, the size with
-// one, by the floor. Nothing where the clip does not tell (why_not_fitted), or when interrupted.
-std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<const ClipInstant> clip, Console& console);
+// Tracks the clip online with the body as given: poses [T][D], fewer when interrupted.
+std::vector<std::vector<double>> poses_as_given(const TrackerOptions& tracker, std::span<const ClipInstant> clip,
+                                                Console& console, const ClipResume& resume = {});
+
+// From these poses fits the body: bones and girths with several cameras, the size with one, by the floor. Nothing where
+// the clip does not tell (why_not_fitted), or when interrupted.
+std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<const ClipInstant> clip,
+                                   std::span<const std::vector<double>> poses, Console& console);
 
 std::string why_not_fitted(size_t num_cameras);
 

@@ -1,10 +1,15 @@
 // silpose track: from a clip to poses.
+#include <fmt/format.h>
+
 #include <memory>
+#include <utility>
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
+#include "apps/silpose/option_file.h"
 #include "apps/silpose/result_directory.h"
 #include "apps/silpose/run_facts.h"
+#include "apps/silpose/track_checkpoint.h"
 #include "apps/silpose/track_each.h"
 #include "apps/silpose/track_options.h"
 #include "apps/silpose/track_result.h"
@@ -16,7 +21,7 @@ namespace {
 
 Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, const CommonOptions& common,
                               Console& console) {
-  Result<ResultDirectory> directory = ResultDirectory::create(options.out);
+  Result<ResultDirectory> directory = ResultDirectory::create(options.out, options.resume);
   if (!directory) return directory.failure();
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
   if (!body) return body.failure();
@@ -26,6 +31,16 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   const Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
   if (!cameras) return cameras.failure();
   TrackerOptions tracker = tracker_options(options, *body, cameras->cameras, common.seed);
+  TrackResume resume{
+      .folder = directory->path(),
+      .made_with = made_with(option_lines(app, chosen_options(options, tracker.resolved())), cameras->cameras, **body),
+      .earlier = {}};
+  if (options.resume) {
+    auto earlier = read_checkpoint(resume.folder, resume.made_with);
+    if (!earlier) return earlier.failure();
+    if (!*earlier) console.message(fmt::format("{}: nothing to go on from", resume.folder.string()));
+    resume.earlier = std::move(*earlier);
+  }
   Result<ObservationSource> source = ObservationSource::open(options.input, console);
   if (!source) return source.failure();
   if (options.init == "landmarks" && !source->finds_landmarks()) {
@@ -34,7 +49,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   tracker.landmarks = (options.init == "auto" || options.init == "landmarks") && source->finds_landmarks();
 
   TrackWriter writer(directory->path(), *body, cameras->cameras, source->video().fps(), options.draw_floor);
-  const Result<Tracked> tracked = track_video(options, std::move(tracker), *source, writer, console);
+  const Result<Tracked> tracked = track_video(options, std::move(tracker), *source, writer, console, std::move(resume));
   if (!tracked) return tracked.failure();
 
   std::vector<std::string> warnings = cameras->warnings;
@@ -50,6 +65,10 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   if (is_recorded) {
     const Result<void> written = write_track_report(told, directory->path());
     if (!written) return written.failure();
+  }
+  if (!tracked->interrupted) {
+    remove_checkpoint(directory->path());
+    writer.remove_confidence();
   }
   Outcome outcome = track_outcome(told, tracked->interrupted ? directory->path() : directory->final_path());
   return deliver(*directory, app, chosen_options(options, tracked->used), std::move(outcome), console);

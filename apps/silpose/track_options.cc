@@ -26,7 +26,8 @@ void add_fitted_options(CLI::App& app, TrackOptions& options) {
       ->group(kFitted);
   app.add_flag_function(
          "--fit-body,!--no-fit-body", [&options](int64_t count) { options.fit_body = count > 0; },
-         "Fit the body to the subject first: bones and girths with several cameras, the size with one and its floor; needs "
+         "Fit the body to the subject first: bones and girths with several cameras, the size with one and its floor; "
+         "needs "
          "--camera and --smooth (accurate with several cameras: on)")
       ->group(kFitted);
   app.add_flag_function(
@@ -79,7 +80,9 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
   add_input_options(app, options.input);
   app.add_option("--out", options.out, "Directory for the result");
   app.add_flag("--each", options.each, "Every VIDEO is a clip of its own, its result in DIR/NAME");
-  app.add_flag("--resume", options.resume, "With --each: leave out clips that have a result already");
+  app.add_flag("--resume", options.resume,
+               "Go on from what the same command, interrupted, left in DIR.partial; with --each, leave out clips that "
+               "have a result already");
   add_model_option(app, options.model);
   add_camera_options(app, options.camera);
   app.add_option(
@@ -105,7 +108,11 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
 }
 
 void check_together(const TrackOptions& options) {
-  if (options.resume && !options.each) throw UsageError("--resume: needs --each");
+  for (const std::string& video : options.input.videos) {
+    if (options.resume && video.starts_with("camera:")) {
+      throw UsageError(fmt::format("--resume: {} is live; give a recorded clip", video));
+    }
+  }
   const TrackerOptions& tracker = options.tracker;
   const char* const sampler = tracker.num_particles ? "--particles"
                               : tracker.num_layers  ? "--layers"

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "apps/silpose/subject_fit.h"
 #include "sadb/store/memory_store.h"
@@ -15,31 +16,38 @@
 namespace silpose::app {
 namespace {
 
+// A checkpoint is written this often, less often where writing takes longer than a fiftieth of that.
+constexpr double kLeastInterval_s = 2, kIntervalOverWriting = 50;
+
 class TrackRun {
  public:
   TrackRun(const TrackOptions& options, TrackerOptions tracker, ObservationSource& source, TrackWriter& writer,
-           Console& console)
+           Console& console, TrackResume resume)
       : options_(options),
         tracker_options_(std::move(tracker)),
         source_(source),
         writer_(writer),
         console_(console),
+        resume_(std::move(resume)),
         board_(std::make_shared<sadb::MemoryStore>()),
         // The masks are in files; kept in memory too, they would bound how long a clip may be.
         recorder_(board_, writer.body().skeleton.name(), names_of(writer.cameras()), {.masks = false}) {}
 
   Result<Tracked> run() {
-    const Stopwatch wall;
     tracked_.used = tracker_options_.resolved();
-    tracked_.seconds.background = source_.learning_s();
+    if (*tracked_.used.smooth) writer_.keep_confidence();
+    if (resume_.earlier) {
+      if (Result<void> ready = go_on(std::move(*resume_.earlier)); !ready) return ready.failure();
+    }
+    now_.seconds.background += source_.learning_s();
     const Result<void> done = *tracked_.used.smooth ? track_whole() : track_online();
     if (!done) return done.failure();
-    if (tracked_.num_frames == 0) {
+    if (now_.num_frames == 0) {
       if (Console::interrupted()) return error("interrupted before the first frame");
       return error("{}: no frame between --start and --end", source_.video().name());
     }
     tracked_.interrupted = Console::interrupted();
-    if (is_recorded_) {
+    if (!now_.reports.empty()) {
       Result<TrackRecording> recording = read_recording(*board_);
       if (!recording) return recording.failure();
       tracked_.recording = std::move(*recording);
@@ -50,8 +58,10 @@ class TrackRun {
     if (!has_opensim_coordinates(writer_.body().skeleton)) {
       tracked_.warnings.emplace_back("no motion.mot: the model's skeleton is not the human one");
     }
-    tracked_.seconds.write += writing.seconds();
-    tracked_.loop_s = wall.seconds();
+    now_.seconds.write += writing.seconds();
+    tracked_.num_frames = now_.num_frames;
+    tracked_.seconds = now_.seconds;
+    tracked_.loop_s = earlier_loop_s_ + wall_.seconds();
     return std::move(tracked_);
   }
 
@@ -63,108 +73,212 @@ class TrackRun {
     return names;
   }
 
+  Result<void> begin_at(int64_t frame_idx) {
+    auto pose = read_initial_pose(options_, writer_.body().skeleton, frame_idx);
+    if (!pose) return pose.failure();
+    tracker_options_.initial_pose = std::move(*pose);
+    return {};
+  }
+
+  // Reads the pictures of the frames done again, without segmenting them, and takes up what was left.
+  Result<void> go_on(TrackCheckpoint earlier) {
+    int64_t last = 0;
+    for (int64_t n = 0; n < earlier.num_frames; ++n) {
+      if (!console_.update("reading what is done", n, earlier.num_frames)) return error("interrupted");
+      Result<std::optional<Frame>> frame = source_.skip();
+      if (!frame) return frame.failure();
+      if (!frame->has_value()) {
+        return error("--resume: {} ends at frame {}, {} has {} of them", source_.video().name(), n,
+                     resume_.folder.string(), earlier.num_frames);
+      }
+      last = (*frame)->index;
+      if (n == 0) {
+        if (Result<void> begun = begin_at(last); !begun) return begun;
+      }
+      if (n + 1 == earlier.num_frames && picture_checksum(**frame) != earlier.last_picture) {
+        return error("--resume: frame {} of {} is not the one that {} was made of", last, source_.video().name(),
+                     resume_.folder.string());
+      }
+      if (earlier.seen.empty()) continue;
+      auto seen = writer_.read_masks(last, earlier.seen.at(static_cast<size_t>(n)));
+      if (!seen) return seen.failure();
+      clip_.push_back({last, (*frame)->time_ns, std::move(*seen)});
+    }
+    source_.restore(earlier.source);
+    writer_.restore_strips(std::exchange(earlier.strips, {}));
+    now_ = std::move(earlier);
+    earlier_loop_s_ = now_.loop_s;
+    is_resumed_ = true;
+    for (const StepReport& report : now_.reports) {
+      if (Result<void> put = recorder_.put(report); !put) return put;
+    }
+    console_.message(fmt::format("{}: {} frames are done; going on from frame {}", resume_.folder.string(),
+                                 now_.num_frames, last + 1));
+    return {};
+  }
+
+  Result<void> save(std::string tracker) {
+    if (source_.video().is_live()) return {};
+    const Stopwatch writing;
+    now_.tracker = std::move(tracker);
+    now_.source = source_.state();
+    now_.strips = writer_.strips();
+    now_.loop_s = earlier_loop_s_ + wall_.seconds();
+    Result<void> written = write_checkpoint(resume_.folder, resume_.made_with, now_);
+    now_.seconds.write += writing.seconds();
+    save_interval_s_ = std::max(kLeastInterval_s, kIntervalOverWriting * writing.seconds());
+    since_save_ = {};
+    return written;
+  }
+  [[nodiscard]] bool should_save() const { return Console::interrupted() || since_save_.seconds() > save_interval_s_; }
+
   // The next frame, its masks written; nothing at the end or when asked to stop.
   Result<std::optional<Instant>> next(std::string_view progress) {
-    if (!console_.update(progress, tracked_.num_frames, source_.num_expected())) return std::optional<Instant>();
+    if (!console_.update(progress, now_.num_frames, source_.num_expected())) return std::optional<Instant>();
     Result<std::optional<Instant>> instant = source_.next();
     if (!instant || !instant->has_value()) return instant;
     const Instant& now = **instant;
-    if (tracked_.num_frames++ == 0) {
-      auto pose = read_initial_pose(options_, writer_.body().skeleton, now.frame.index);
-      if (!pose) return pose.failure();
-      tracker_options_.initial_pose = std::move(*pose);
+    if (now_.num_frames++ == 0) {
+      if (const Result<void> begun = begin_at(now.frame.index); !begun) return begun.failure();
     }
-    tracked_.seconds.decode += now.decode_s;
-    tracked_.seconds.segment += now.segment_s;
+    now_.seconds.decode += now.decode_s;
+    now_.seconds.segment += now.segment_s;
     const Stopwatch writing;
+    now_.last_picture = picture_checksum(now.frame);
     const Result<void> written = writer_.add_masks(now.frame, now.observations);
-    tracked_.seconds.write += writing.seconds();
+    now_.seconds.write += writing.seconds();
     if (!written) return written.failure();
     return instant;
   }
 
-  Result<void> record(const StepReport& report) {
-    StageSeconds& seconds = tracked_.seconds;
+  Result<void> record(StepReport report) {
+    StageSeconds& seconds = now_.seconds;
     seconds.start += report.seconds.start;
     seconds.propagate += report.seconds.propagate;
     seconds.likelihood += report.seconds.likelihood;
     seconds.resample += report.seconds.resample;
-    is_recorded_ = true;
-    return recorder_.put(report);
+    report.observed.clear();
+    Result<void> put = recorder_.put(report);
+    now_.reports.push_back(std::move(report));
+    return put;
   }
 
   Result<void> track_online() {
     std::optional<Tracker> tracker;
+    if (is_resumed_) {
+      tracker.emplace(tracker_options_);
+      tracker->restore(now_.tracker);
+    }
     while (true) {
       Result<std::optional<Instant>> instant = next("tracking");
       if (!instant) return instant.failure();
-      if (!instant->has_value()) return {};
+      if (!instant->has_value()) break;
       Instant& now = **instant;
       if (!tracker) tracker.emplace(tracker_options_);
-      const StepReport report = tracker->step(now.observations, now.frame.index, now.frame.time_ns);
+      StepReport report = tracker->step(now.observations, now.frame.index, now.frame.time_ns);
       const Stopwatch writing;
-      if (Result<void> recorded = record(report); !recorded) return recorded;
-      Result<void> drawn = writer_.add_picture(std::move(now.frame.images[0]), report.time_ns, report.pose);
+      // A film cannot be gone on with: it is drawn in the end.
+      Result<void> drawn;
+      if (!is_resumed_) drawn = writer_.add_picture(std::move(now.frame.images[0]), report.time_ns, report.pose);
       if (!drawn) return drawn;
-      tracked_.seconds.write += writing.seconds();
+      now_.seconds.write += writing.seconds();
+      if (Result<void> recorded = record(std::move(report)); !recorded) return recorded;
+      if (!should_save()) continue;
+      if (Result<void> saved = save(tracker->state()); !saved) return saved;
     }
+    if (!tracker) return {};
+    if (Console::interrupted() || is_resumed_) {
+      if (Result<void> saved = save(tracker->state()); !saved) return saved;
+    }
+    return is_resumed_ ? draw() : Result<void>();
   }
 
   Result<void> track_whole() {
-    std::vector<ClipInstant> clip;
     while (true) {
       Result<std::optional<Instant>> instant = next("segmenting");
       if (!instant) return instant.failure();
       if (!instant->has_value()) break;
-      clip.push_back({(*instant)->frame.index, (*instant)->frame.time_ns, std::move((*instant)->observations)});
+      Instant& now = **instant;
+      std::vector<BesideMask>& beside = now_.seen.emplace_back();
+      for (const Observation& seen : now.observations) beside.push_back({seen.trust, seen.landmarks});
+      clip_.push_back({now.frame.index, now.frame.time_ns, std::move(now.observations)});
+      if (!should_save()) continue;
+      if (Result<void> saved = save({}); !saved) return saved;
     }
-    if (clip.empty() || Console::interrupted()) return {};
-    const Stopwatch smoothing;
-    if (fits_body(options_) && !fit_body_to(clip)) return {};
-    const std::vector<StepReport> reports = track_clip(tracker_options_, clip, [&](size_t done, size_t total) {
-      return console_.update("tracking", static_cast<int64_t>(done), static_cast<int64_t>(total));
-    });
-    double told_s = 0;
-    for (const StepReport& report : reports) {
-      if (Result<void> recorded = record(report); !recorded) return recorded;
-      const StepSeconds& of_step = report.seconds;
-      told_s += of_step.start + of_step.propagate + of_step.likelihood + of_step.resample;
+    if (clip_.empty()) return {};
+    if (Result<void> saved = save(now_.tracker); !saved || Console::interrupted()) return saved;
+    if (fits_body(options_)) {
+      if (Result<void> fitted = fit_body_to_clip(); !fitted || Console::interrupted()) return fitted;
     }
-    tracked_.seconds.smooth = smoothing.seconds() - told_s;
-    return draw(reports);
+    if (now_.reports.empty()) {
+      if (Result<void> tracked = track_instants(); !tracked || Console::interrupted()) return tracked;
+    }
+    return draw();
   }
 
-  // From here on the body is the subject's, as far as the clip tells it. False: interrupted.
-  bool fit_body_to(std::span<const ClipInstant> clip) {
-    std::optional<BodyFit> fit = fit_subject(tracker_options_, clip, console_);
-    if (Console::interrupted()) return false;
+  // Of tracking the clip as a whole; what saving comes to is in `saved_`.
+  ClipResume clip_resume() {
+    return {.state = now_.tracker, .keep = [this](const std::function<std::string()>& state) {
+              if (saved_ && should_save()) saved_ = save(state());
+            }};
+  }
+
+  Result<void> track_instants() {
+    const Stopwatch smoothing;
+    const auto progress = [&](size_t done, size_t total) {
+      return saved_ && console_.update("tracking", static_cast<int64_t>(done), static_cast<int64_t>(total));
+    };
+    std::vector<StepReport> reports = track_clip(tracker_options_, clip_, progress, clip_resume());
+    if (!saved_) return saved_;
+    double told_s = 0;
+    for (StepReport& report : reports) {
+      const StepSeconds& of_step = report.seconds;
+      told_s += of_step.start + of_step.propagate + of_step.likelihood + of_step.resample;
+      if (Result<void> recorded = record(std::move(report)); !recorded) return recorded;
+    }
+    now_.seconds.smooth += smoothing.seconds() - told_s;
+    return Console::interrupted() && reports.empty() ? Result<void>() : save({});
+  }
+
+  // From here on the body is the subject's, as far as the clip tells it.
+  Result<void> fit_body_to_clip() {
+    const Stopwatch fitting;
+    if (now_.given_poses.empty()) {
+      std::vector<std::vector<double>> poses = poses_as_given(tracker_options_, clip_, console_, clip_resume());
+      if (!saved_ || Console::interrupted()) return saved_;
+      now_.given_poses = std::move(poses);
+      if (Result<void> saved = save({}); !saved) return saved;
+    }
+    std::optional<BodyFit> fit = fit_subject(tracker_options_, clip_, now_.given_poses, console_);
+    if (Console::interrupted()) return {};
+    now_.seconds.smooth += fitting.seconds();
     if (!fit) {
       tracked_.warnings.push_back("the body is as given: " + why_not_fitted(tracker_options_.cameras.size()));
-      return true;
+      return {};
     }
     tracker_options_.body = fit->body;
     writer_.set_fitted_body(fit->body);
     tracked_.body_fit = std::move(fit);
-    return true;
+    return {};
   }
 
   // The overlay, in a second pass over the pictures.
-  Result<void> draw(const std::vector<StepReport>& reports) {
+  Result<void> draw() {
     const Stopwatch writing;
     Result<Video> video = open_video(options_.input.videos, options_.input.video_options());
     if (!video) return video.failure();
-    const auto total = std::ssize(reports);
+    const auto total = std::ssize(now_.reports);
     for (int64_t drawn = 0; drawn < total && console_.update("writing", drawn, total);) {
       Result<std::optional<Frame>> frame = video->next();
       if (!frame) return frame.failure();
       if (!frame->has_value()) return error("{}: ended earlier when it was read again", video->name());
-      const StepReport& report = reports[static_cast<size_t>(drawn)];
+      const StepReport& report = now_.reports[static_cast<size_t>(drawn)];
       if ((*frame)->index < report.frame_idx) continue;
       Result<void> added = writer_.add_picture(std::move((*frame)->images[0]), report.time_ns, report.pose);
       if (!added) return added;
       ++drawn;
     }
-    tracked_.seconds.write += writing.seconds();
+    now_.seconds.write += writing.seconds();
     return {};
   }
 
@@ -173,23 +287,23 @@ class TrackRun {
   ObservationSource& source_;
   TrackWriter& writer_;
   Console& console_;
+  TrackResume resume_;
   std::shared_ptr<sadb::MemoryStore> board_;
   TrackRecorder recorder_;
-  bool is_recorded_ = false;
   Tracked tracked_;
+  TrackCheckpoint now_;
+  std::vector<ClipInstant> clip_;  // tracked as a whole
+  bool is_resumed_ = false;
+  Result<void> saved_;
+  Stopwatch wall_, since_save_;
+  double earlier_loop_s_ = 0, save_interval_s_ = kLeastInterval_s;
 };
 
 }  // namespace
 
-std::vector<std::pair<std::string, double>> StageSeconds::list() const {
-  return {{"background", background}, {"decode", decode},       {"segment", segment},
-          {"start", start},           {"propagate", propagate}, {"likelihood", likelihood},
-          {"resample", resample},     {"smooth", smooth},       {"write", write}};
-}
-
 Result<Tracked> track_video(const TrackOptions& options, TrackerOptions tracker, ObservationSource& source,
-                            TrackWriter& writer, Console& console) {
-  return TrackRun(options, std::move(tracker), source, writer, console).run();
+                            TrackWriter& writer, Console& console, TrackResume resume) {
+  return TrackRun(options, std::move(tracker), source, writer, console, std::move(resume)).run();
 }
 
 }  // namespace silpose::app

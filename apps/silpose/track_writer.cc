@@ -15,6 +15,11 @@
 #include "silpose/render/silhouette.h"
 
 namespace silpose::app {
+namespace {
+
+constexpr std::string_view kMaskFolder = "masks";
+
+}  // namespace
 
 TrackWriter::TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
                          std::vector<PinholeCamera> cameras, double fps, bool draws_floor)
@@ -25,16 +30,60 @@ TrackWriter::TrackWriter(std::filesystem::path directory, std::shared_ptr<const 
       draws_floor_(draws_floor),
       strips_(cameras_.size()) {}
 
+std::filesystem::path TrackWriter::file_of(std::string_view folder, size_t camera, int64_t frame_idx) const {
+  std::string name(folder);
+  if (cameras_.size() > 1) name += "_" + cameras_[camera].name;
+  return directory_ / name / fmt::format("{:06}.png", frame_idx);
+}
+
 Result<void> TrackWriter::add_masks(const Frame& frame, std::span<const Observation> observations) {
   for (size_t c = 0; c < cameras_.size(); ++c) {
-    const auto folder = directory_ / (cameras_.size() == 1 ? "masks" : "masks_" + cameras_[c].name);
+    const auto file = file_of(kMaskFolder, c, frame.index);
     std::error_code failed;
-    std::filesystem::create_directories(folder, failed);
-    const Result<void> written = write_mask(folder / fmt::format("{:06}.png", frame.index), observations[c].mask);
+    std::filesystem::create_directories(file.parent_path(), failed);
+    const Result<void> written = write_mask(file, observations[c].mask);
     if (!written) return written.failure();
     strips_[c].add(frame.index, static_cast<double>(frame.time_ns) * 1e-9, frame.images[c], observations[c].mask);
+    if (!keeps_confidence_ || observations[c].confidence.empty()) continue;
+    const auto of_confidence = file_of(kConfidenceFolder, c, frame.index);
+    std::filesystem::create_directories(of_confidence.parent_path(), failed);
+    if (Result<void> kept = write_image(of_confidence, observations[c].confidence); !kept) return kept;
   }
   return {};
+}
+
+void TrackWriter::remove_confidence() {
+  for (size_t c = 0; c < cameras_.size(); ++c) {
+    std::error_code ignored;
+    std::filesystem::remove_all(file_of(kConfidenceFolder, c, 0).parent_path(), ignored);
+  }
+}
+
+Result<std::vector<Observation>> TrackWriter::read_masks(int64_t frame_idx, std::span<const BesideMask> beside) const {
+  std::vector<Observation> observations(cameras_.size());
+  for (size_t c = 0; c < cameras_.size(); ++c) {
+    const auto file = file_of(kMaskFolder, c, frame_idx), of_confidence = file_of(kConfidenceFolder, c, frame_idx);
+    Result<Mask> mask = read_mask(file);
+    if (!mask) return mask.failure();
+    std::error_code ignored;
+    if (std::filesystem::exists(of_confidence, ignored)) {
+      Result<ByteImage> confidence = read_grey_image(of_confidence);
+      if (!confidence) return confidence.failure();
+      observations[c].confidence = std::move(*confidence);
+    }
+    const auto fits = [&](const auto& image) {
+      return image.width() == cameras_[c].width && image.height() == cameras_[c].height;
+    };
+    if (!fits(*mask) || !(observations[c].confidence.empty() || fits(observations[c].confidence))) {
+      return error("{}: {}x{}, the pictures {}x{}", file.string(), mask->width(), mask->height(), cameras_[c].width,
+                   cameras_[c].height);
+    }
+    observations[c].box = mask->bounding_box();
+    observations[c].mask = std::move(*mask);
+    observations[c].trust = beside[c].trust;
+    observations[c].landmarks = beside[c].landmarks;
+  }
+  return observations;
 }
 
 Result<void> TrackWriter::add_picture(ByteImage picture, int64_t time_ns, std::span<const double> pose) {

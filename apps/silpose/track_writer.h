@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "silpose/base/result.h"
@@ -21,15 +23,33 @@ namespace silpose::app {
 
 // The body whose bones were fitted to a clip, in its result directory.
 inline constexpr const char* kFittedBodyFile = "fitted.body";
+// How sure each pixel of a mask is, while a clip that is tracked as a whole is not done.
+inline constexpr std::string_view kConfidenceFolder = "confidence";
+
+// What an observation says beside its mask and confidence.
+struct BesideMask {
+  Trust trust;
+  std::vector<SeenLandmark> landmarks;
+
+  static auto members(auto& b) { return std::tie(b.trust, b.landmarks); }
+};
 
 class TrackWriter {
  public:
   TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
-              std::vector<PinholeCamera> cameras, double fps, bool draws_floor);  // fps: of files that want an even rate
+              std::vector<PinholeCamera> cameras, double fps,
+              bool draws_floor);  // fps: of files that want an even rate
 
   // One frame of masks/ (masks_NAME/ with several cameras), and of the examples that strips() has. Shapes: one
   // observation a camera.
   Result<void> add_masks(const Frame& frame, std::span<const Observation> observations);
+
+  // From now on add_masks() keeps the confidence of the masks, too, for read_masks(), until remove_confidence().
+  void keep_confidence() { keeps_confidence_ = true; }
+  void remove_confidence();
+  // What add_masks() wrote of a frame, also of an earlier program. Shapes: the rest of each camera's observation.
+  // Errors: a picture that cannot be read or has another size.
+  Result<std::vector<Observation>> read_masks(int64_t frame_idx, std::span<const BesideMask> beside) const;
 
   // The next picture of overlay.mp4, of the first camera at its time, with `pose` [D] drawn on it; empty:
   // nothing is. The floor round the subject, and its footprints, are drawn too where the writer was asked to.
@@ -46,15 +66,19 @@ class TrackWriter {
   [[nodiscard]] const BodyModel& body() const { return *body_; }
   // Of each camera, examples of its masks.
   [[nodiscard]] const std::vector<MaskStrip>& strips() const { return strips_; }
+  void restore_strips(std::vector<MaskStrip> strips) { strips_ = std::move(strips); }
 
  private:
+  // The file of a frame's mask, or in kConfidenceFolder its confidence.
+  [[nodiscard]] std::filesystem::path file_of(std::string_view folder, size_t camera, int64_t frame_idx) const;
+
   std::filesystem::path directory_;
   std::shared_ptr<const BodyModel> body_;
   std::vector<PinholeCamera> cameras_;
   double fps_;
-  bool draws_floor_, is_fitted_ = false;
+  bool draws_floor_, is_fitted_ = false, keeps_confidence_ = false;
   Eigen::Vector2d floor_middle_ = Eigen::Vector2d::Zero();  // x, z: below the subject's root, where it was seen last
-  std::vector<MaskStrip> strips_;  // [C]
+  std::vector<MaskStrip> strips_;                           // [C]
   std::optional<VideoWriter> overlay_;
 };
 

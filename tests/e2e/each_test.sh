@@ -30,7 +30,6 @@ grep -q '1 of 2 clips tracked, 1 were there already' resumed.txt || fail "--resu
 [[ -s all/clip2/poses.csv ]] || fail "--resume left out what was not there"
 
 expect_failure 2 'one name' "${each[@]}" clip1 truth1/../clip1
-expect_failure 2 'resume: needs --each' track clip1 --resume --out x
 expect_failure 2 'live' "${each[@]}" camera:0
 expect_failure 2 'masks: belong to one clip' "${each[@]}" clip1 --masks clip2
 finish

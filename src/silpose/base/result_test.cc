@@ -13,18 +13,15 @@ namespace silpose {
 namespace {
 
 Result<int> half(int number) {
-  if (number % 2 != 0)
-    return error("{}: not even", number);
+  if (number % 2 != 0) return error("{}: not even", number);
   return number / 2;
 }
 
 Result<std::string> quarter(int number) {
   const Result<int> first = half(number);
-  if (!first)
-    return first.failure();
+  if (!first) return first.failure();
   const Result<int> second = half(*first);
-  if (!second)
-    return second.failure();
+  if (!second) return second.failure();
   return std::to_string(*second);
 }
 
@@ -41,10 +38,10 @@ TEST(Result, FailurePassesThroughOtherTypes) {
 }
 
 TEST(Result, ValueThrowsTheMessage) {
-  const auto message = [](const auto &call) -> std::string {
+  const auto message = [](const auto& call) -> std::string {
     try {
       call();
-    } catch (const std::runtime_error &failure) {
+    } catch (const std::runtime_error& failure) {
       return failure.what();
     }
     return "nothing thrown";
@@ -54,25 +51,20 @@ TEST(Result, ValueThrowsTheMessage) {
   EXPECT_EQ(message([&] { (void)kept.value(); }), "5: not even");
   EXPECT_EQ(message([&] { (void)constant.value(); }), "5: not even");
   EXPECT_EQ(message([&] { (void)half(5).value(); }), "5: not even");
-  EXPECT_EQ(message([&] { Result<void>(Error{"disk full"}).value(); }),
-            "disk full");
+  EXPECT_EQ(message([&] { Result<void>(Error{"disk full"}).value(); }), "disk full");
   EXPECT_EQ(message([&] { (void)half(4).value(); }), "nothing thrown");
 }
 
 TEST(Result, TemporaryGivesItsValueAway) {
-  const auto make = [] {
-    return Result<std::unique_ptr<int>>(std::make_unique<int>(4));
-  };
+  const auto make = [] { return Result<std::unique_ptr<int>>(std::make_unique<int>(4)); };
   const std::unique_ptr<int> taken = make().value();
   EXPECT_EQ(*taken, 4);
-  static_assert(std::is_same_v<decltype(make().value()), std::unique_ptr<int>>,
-                "a temporary returns by value");
+  static_assert(std::is_same_v<decltype(make().value()), std::unique_ptr<int>>, "a temporary returns by value");
 }
 
 TEST(Result, OfNothing) {
   const auto write = [](bool works) -> Result<void> {
-    if (!works)
-      return error("out.csv: cannot be written");
+    if (!works) return error("out.csv: cannot be written");
     return {};
   };
   EXPECT_TRUE(write(true));
@@ -87,10 +79,10 @@ TEST(Check, ThrowsTheValues) {
   try {
     check(false, "width is {}", -3);
     FAIL() << "nothing thrown";
-  } catch (const std::invalid_argument &failure) {
+  } catch (const std::invalid_argument& failure) {
     EXPECT_STREQ(failure.what(), "width is -3");
   }
 }
 
-} // namespace
-} // namespace silpose
+}  // namespace
+}  // namespace silpose

@@ -16,7 +16,7 @@ namespace {
 struct Reference {
   uint64_t s[4];
 
-  static uint64_t mix(uint64_t &x) {
+  static uint64_t mix(uint64_t& x) {
     x += 0x9e3779b97f4a7c15u;
     uint64_t z = x;
     z ^= z >> 30;
@@ -28,8 +28,7 @@ struct Reference {
   }
   static uint64_t rotate(uint64_t x, int k) { return x << k | x >> (64 - k); }
   explicit Reference(uint64_t mixed) {
-    for (uint64_t &word : s)
-      word = mix(mixed);
+    for (uint64_t& word : s) word = mix(mixed);
   }
   uint64_t next() {
     const uint64_t result = rotate(s[0] + s[3], 23) + s[0];
@@ -51,24 +50,20 @@ TEST(Rng, FollowsItsDefinition) {
     mixed = Reference::mix(mixed) ^ 17;
     Reference reference(mixed);
     Rng rng(seed, 3, 17);
-    for (int i = 0; i < 100; ++i)
-      ASSERT_EQ(rng.bits(), reference.next()) << seed << " " << i;
+    for (int i = 0; i < 100; ++i) ASSERT_EQ(rng.bits(), reference.next()) << seed << " " << i;
   }
 }
 
 TEST(Rng, GoldenValues) {
   Rng rng(1);
-  const std::array<uint64_t, 4> golden = {
-      0x3f8506cb87cd7d91u, 0x7141f0034b964604u, 0x3b07bf3afad2e5u,
-      0x592d5816cb7de2aau};
-  for (const uint64_t value : golden)
-    EXPECT_EQ(rng.bits(), value);
+  const std::array<uint64_t, 4> golden = {0x3f8506cb87cd7d91u, 0x7141f0034b964604u, 0x3b07bf3afad2e5u,
+                                          0x592d5816cb7de2aau};
+  for (const uint64_t value : golden) EXPECT_EQ(rng.bits(), value);
 }
 
 TEST(Rng, SameStreamSameNumbers) {
   Rng a(5, 2, 9), b(5, 2, 9);
-  for (int i = 0; i < 20; ++i)
-    EXPECT_EQ(a.normal(), b.normal());
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(a.normal(), b.normal());
 }
 
 TEST(Rng, StreamsOfNeighboursAreUnrelated) {
@@ -76,8 +71,7 @@ TEST(Rng, StreamsOfNeighboursAreUnrelated) {
   std::set<uint64_t> first;
   for (uint64_t seed = 0; seed < 12; ++seed) {
     for (uint64_t step = 0; step < 12; ++step) {
-      for (uint64_t particle = 0; particle < 12; ++particle)
-        first.insert(Rng(seed, step, particle).bits());
+      for (uint64_t particle = 0; particle < 12; ++particle) first.insert(Rng(seed, step, particle).bits());
     }
   }
   EXPECT_EQ(first.size(), 12u * 12 * 12);
@@ -107,10 +101,8 @@ TEST(Rng, UniformIsEvenAndStaysInside) {
     ++counts[static_cast<size_t>(value * 20)];
   }
   double chi_square = 0;
-  for (const int count : counts)
-    chi_square +=
-        (count - kCount / 20.0) * (count - kCount / 20.0) / (kCount / 20.0);
-  EXPECT_LT(chi_square, 43.8); // 19 degrees of freedom, 0.1 %
+  for (const int count : counts) chi_square += (count - kCount / 20.0) * (count - kCount / 20.0) / (kCount / 20.0);
+  EXPECT_LT(chi_square, 43.8);  // 19 degrees of freedom, 0.1 %
   for (int i = 0; i < 1000; ++i) {
     const double value = rng.uniform(-2, 3);
     ASSERT_TRUE(value >= -2 && value < 3);
@@ -124,24 +116,21 @@ TEST(Rng, NormalHasItsMoments) {
   int beyond_two = 0;
   for (int i = 0; i < kCount; ++i) {
     const double value = rng.normal();
-    for (int power = 1; power <= 4; ++power)
-      moments[static_cast<size_t>(power)] += std::pow(value, power) / kCount;
+    for (int power = 1; power <= 4; ++power) moments[static_cast<size_t>(power)] += std::pow(value, power) / kCount;
     beyond_two += std::abs(value) > 1.959964 ? 1 : 0;
   }
   EXPECT_NEAR(moments[1], 0, 4 * std::sqrt(1.0 / kCount));
   EXPECT_NEAR(moments[2], 1, 4 * std::sqrt(2.0 / kCount));
   EXPECT_NEAR(moments[3], 0, 4 * std::sqrt(15.0 / kCount));
   EXPECT_NEAR(moments[4], 3, 4 * std::sqrt(96.0 / kCount));
-  EXPECT_NEAR(beyond_two / static_cast<double>(kCount), 0.05,
-              4 * std::sqrt(0.05 * 0.95 / kCount));
+  EXPECT_NEAR(beyond_two / static_cast<double>(kCount), 0.05, 4 * std::sqrt(0.05 * 0.95 / kCount));
 }
 
 TEST(Rng, PairsOfNormalsAreUnrelated) {
   Rng rng(12);
   constexpr int kCount = 100000;
   double product = 0;
-  for (int i = 0; i < kCount; ++i)
-    product += rng.normal() * rng.normal();
+  for (int i = 0; i < kCount; ++i) product += rng.normal() * rng.normal();
   EXPECT_NEAR(product / kCount, 0, 4 / std::sqrt(kCount));
 }
 
@@ -149,13 +138,11 @@ TEST(Rng, IndexIsEven) {
   Rng rng(4);
   std::array<int, 7> counts{};
   constexpr int kCount = 70000;
-  for (int i = 0; i < kCount; ++i)
-    ++counts.at(rng.index(7));
-  for (const int count : counts)
-    EXPECT_NEAR(count, kCount / 7.0, 4 * std::sqrt(kCount / 7.0));
+  for (int i = 0; i < kCount; ++i) ++counts.at(rng.index(7));
+  for (const int count : counts) EXPECT_NEAR(count, kCount / 7.0, 4 * std::sqrt(kCount / 7.0));
   EXPECT_EQ(rng.index(1), 0u);
   EXPECT_THROW((void)rng.index(0), std::invalid_argument);
 }
 
-} // namespace
-} // namespace silpose
+}  // namespace
+}  // namespace silpose

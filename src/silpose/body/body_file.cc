@@ -1,13 +1,11 @@
-// The .body file: docs/formats.md describes it. A header with magic, version, size and CRC-32, then the payload.
-#include <zlib.h>
-
+// The .body file: docs/formats.md describes it. A checked file (base/checked_file.h).
 #include <bit>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
 
-#include "silpose/base/text_file.h"
+#include "silpose/base/checked_file.h"
 #include "silpose/body/body_model.h"
 
 namespace silpose {
@@ -15,9 +13,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the .body file is copied byte by byte");
 
-constexpr std::string_view kMagic = "SILPBODY";
-constexpr uint32_t kVersion = 1;
-constexpr size_t kHeaderBytes = 8 + 4 + 4 + 8;  // magic, version, CRC-32 of the payload, size of the payload
+constexpr FileKind kBodyFile{.magic = "SILPBODY", .version = 1, .name = "body file"};
 
 class Writer {
  public:
@@ -212,11 +208,6 @@ BodyModel get_body(Reader& in) {
   return body;
 }
 
-uint32_t checksum(std::string_view bytes) {
-  return static_cast<uint32_t>(
-      crc32_z(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
 }  // namespace
 
 Result<void> write_body(const std::filesystem::path& path, const BodyModel& body) {
@@ -248,33 +239,14 @@ Result<void> write_body(const std::filesystem::path& path, const BodyModel& body
     out.put(key);
     out.put(value);
   }
-  Writer file;
-  file.put_array(kMagic.data(), kMagic.size());
-  file.put(kVersion);
-  file.put(checksum(out.bytes()));
-  file.put(static_cast<uint64_t>(out.bytes().size()));
-  return write_text_file(path, file.bytes() + out.bytes());
+  return write_checked_file(path, kBodyFile, out.bytes());
 }
 
 Result<BodyModel> load_body(const std::filesystem::path& path) {
-  const Result<std::string> file = read_text_file(path);
-  if (!file) return file.failure();
-  std::string_view bytes = *file;
-  if (bytes.empty()) return error("{}: empty", path.string());
-  if (!bytes.starts_with(kMagic)) return error("{}: not a body file", path.string());
-  if (bytes.size() < kHeaderBytes) return error("{}: truncated", path.string());
-  Reader header(bytes.substr(kMagic.size(), kHeaderBytes - kMagic.size()));
-  const uint32_t version = header.get<uint32_t>();
-  const uint32_t expected_checksum = header.get<uint32_t>();
-  const uint64_t size = header.get<uint64_t>();
-  if (version != kVersion) return error("{}: body file of version {}, not {}", path.string(), version, kVersion);
-  bytes.remove_prefix(kHeaderBytes);
-  if (bytes.size() < size) return error("{}: truncated", path.string());
-  if (bytes.size() > size || checksum(bytes) != expected_checksum) {
-    return error("{}: damaged (checksum)", path.string());
-  }
+  const Result<std::string> bytes = read_checked_file(path, kBodyFile);
+  if (!bytes) return bytes.failure();
   try {
-    Reader in(bytes);
+    Reader in(*bytes);
     return get_body(in);
   } catch (const Malformed& malformed) {
     return error("{}: malformed body file: {}", path.string(), malformed.what());

@@ -53,6 +53,13 @@ class AnnealedFilter {
 
   [[nodiscard]] const ParticleSet& particles() const { return particles_; }
 
+  // What another filter of the same options goes on from, as this one would. REQUIRES: states of the same D.
+  [[nodiscard]] FilterState state() const { return {particles_, step_}; }
+  void restore(FilterState state) {
+    particles_ = std::move(state.particles);
+    step_ = state.step;
+  }
+
  private:
   void run_layers(uint64_t step, const Diffuse& diffuse, const LogLikelihood& log_likelihood, FilterReport& report);
   StateBatch recombine(uint64_t stream) const;

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <tuple>
 #include <vector>
 
 namespace silpose {
@@ -18,6 +19,8 @@ struct GaussianComponent {
   [[nodiscard]] Eigen::Index num_dofs() const { return mean.size() / 2; }
   [[nodiscard]] auto pose() const { return mean.head(num_dofs()); }
   [[nodiscard]] auto pose_covariance() const { return covariance.topLeftCorner(num_dofs(), num_dofs()); }
+
+  static auto members(auto& c) { return std::tie(c.mean, c.covariance, c.log_weight); }
 };
 
 // At rest at `pose` [D], with independent deviations of pose and velocity [D].

@@ -37,6 +37,13 @@ class ParticleFilter {
 
   [[nodiscard]] const ParticleSet& particles() const { return particles_; }
 
+  // What another filter of the same options goes on from, as this one would. REQUIRES: states of the same D.
+  [[nodiscard]] FilterState state() const { return {particles_, step_}; }
+  void restore(FilterState state) {
+    particles_ = std::move(state.particles);
+    step_ = state.step;
+  }
+
  private:
   std::shared_ptr<const Resampler> resampler_;
   ParticleFilterOptions options_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "silpose/filter/log_weights.h"
@@ -47,6 +48,16 @@ struct ParticleSet {
   // Puts candidates [K, D] in the place of the K lowest weighted particles, each with the average weight 1 / N.
   // REQUIRES: K <= N, the same D.
   void inject(const StateBatch& candidates);
+
+  static auto members(auto& s) { return std::tie(s.states, s.log_weights); }
+};
+
+// What a filter goes on from, besides its options.
+struct FilterState {
+  ParticleSet particles;
+  uint64_t step = 0;
+
+  static auto members(auto& s) { return std::tie(s.particles, s.step); }
 };
 
 // The stream coordinate of a layer of a step. A step has at most kMaxLayers; layer 0 is the step's own.

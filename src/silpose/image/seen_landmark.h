@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <tuple>
 
 namespace silpose {
 
@@ -9,6 +10,8 @@ struct SeenLandmark {
   std::string name;       // of the joint, or end point, of the body: "left_shin" is the left knee
   double x = 0, y = 0;    // pixels
   double visibility = 1;  // 0 to 1
+
+  static auto members(auto& l) { return std::tie(l.name, l.x, l.y, l.visibility); }
 };
 
 }  // namespace silpose

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "silpose/image/image.h"
@@ -18,6 +19,8 @@ struct MaskExample {
   int width = 0, height = 0;  // pixels
   bool is_empty = false;      // nothing was found; the picture is whole
   std::string jpeg;           // the bytes of the file
+
+  static auto members(auto& e) { return std::tie(e.frame_idx, e.time_s, e.width, e.height, e.is_empty, e.jpeg); }
 };
 
 class MaskStrip {
@@ -30,6 +33,8 @@ class MaskStrip {
 
   // At most kMost, the first picture among them; all where there were no more.
   [[nodiscard]] std::vector<MaskExample> examples() const;
+
+  static auto members(auto& s) { return std::tie(s.kept_, s.num_seen_, s.stride_); }
 
  private:
   std::vector<MaskExample> kept_;  // every stride_-th picture, less than 4 kMost of them

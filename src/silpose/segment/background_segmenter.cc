@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "silpose/base/state_bytes.h"
 #include "silpose/segment/depth_model.h"
 #include "silpose/segment/edge_matte.h"
 #include "silpose/segment/foreground.h"
@@ -48,6 +49,10 @@ class BackgroundSegmenter : public Segmenter {
     return monitor_.judge(grow(matte.mask, grow_px), std::move(confidence));
   }
   [[nodiscard]] int64_t first_index() const override { return options_.first_index; }
+  [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
+  void restore(std::string_view state) override {
+    check(from_bytes(state, monitor_), "BackgroundSegmenter: not a state of it");
+  }
   [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
   [[nodiscard]] std::string name() const override { return options_.name; }
 
@@ -93,6 +98,7 @@ class OnlineSegmenter : public Segmenter {
     }
     return monitor_.judge(choose_blob(mask_from_image(bytes), options_.clean_up));
   }
+  [[nodiscard]] bool sees_all() const override { return true; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
   [[nodiscard]] std::string name() const override { return options_.name; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "silpose/base/state_bytes.h"
 #include "silpose/segment/trust_monitor.h"
 
 namespace silpose {
@@ -38,6 +39,10 @@ class ChromaSegmenter : public Segmenter {
                    model_.height());
     }
     return monitor_.judge(choose_blob(find_before_screen(model_, to_luma_chroma(image)), clean_up_));
+  }
+  [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
+  void restore(std::string_view state) override {
+    check(from_bytes(state, monitor_), "ChromaSegmenter: not a state of it");
   }
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
   [[nodiscard]] std::string name() const final {

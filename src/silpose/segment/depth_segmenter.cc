@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "silpose/base/state_bytes.h"
 #include "silpose/segment/trust_monitor.h"
 
 namespace silpose {
@@ -40,6 +41,10 @@ class DepthSegmenter : public Segmenter {
     return monitor_.judge(choose_blob(before, clean_up_));
   }
   [[nodiscard]] int64_t first_index() const override { return depth_.first_number() + depth_.offset; }
+  [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
+  void restore(std::string_view state) override {
+    check(from_bytes(state, monitor_), "DepthSegmenter: not a state of it");
+  }
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
   [[nodiscard]] std::string name() const override {
     return range_ ? fmt::format("depth {:g} to {:g} m", range_->min_m, range_->max_m) : "depth auto";

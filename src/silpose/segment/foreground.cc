@@ -258,6 +258,13 @@ void ForegroundFinder::smooth_beliefs() {
       std::copy(next_.begin() + at + x0, next_.begin() + at + x1, belief_.begin() + at + x0);
     });
   }
+  // What is chosen in the next picture is not tied to what was left of this one.
+  for_each_run([&](int x0, int x1, int y) {
+    const auto at = static_cast<ptrdiff_t>((static_cast<size_t>(y) + 1) * stride_ + 1);
+    for (auto* ties : {&right_, &down_, &down_right_, &down_left_}) {
+      std::fill(ties->begin() + at + x0, ties->begin() + at + x1, 0.0f);
+    }
+  });
 }
 
 void ForegroundFinder::keep_enclosed_shadows(Mask& mask) const {

@@ -1,7 +1,8 @@
 // ForegroundFinder: the pixels that the background does not explain, neither as it is nor darkened by a shadow.
 // Based on: a chi-square distance with a shadow alternative of scaled luma and chroma (references.bib: horprasert1999),
 // made whole by mean-field steps over contrast-sensitive ties between neighbours (references.bib: boykov2001).
-// Threads: one thread per finder (it keeps scratch); works on all cores itself.
+// Threads: one thread per finder (it keeps scratch, which tells nothing of earlier pictures); works on all cores
+// itself.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +46,7 @@ class ForegroundFinder {
   std::vector<uint8_t> differs_;      // would be foreground if there were no shadows
   std::vector<uint8_t> chosen_;       // [blocks_y, blocks_x] where anything may be foreground
   std::vector<float> evidence_, belief_, next_;               // positive speaks for foreground
-  std::vector<float> right_, down_, down_right_, down_left_;  // ties to the neighbour there
+  std::vector<float> right_, down_, down_right_, down_left_;  // ties to the neighbour there; 0 between pictures
 };
 
 // How much brighter the whole picture is than the background: the median ratio of luma. 1 is no change.

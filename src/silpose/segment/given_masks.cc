@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "silpose/base/state_bytes.h"
 #include "silpose/segment/trust_monitor.h"
 
 namespace silpose {
@@ -67,6 +68,10 @@ class GivenMasks : public Segmenter {
       }
       return judge(white_of(told(mask)));
     }
+  }
+  [[nodiscard]] std::string state() const override { return to_bytes(is_told_, warnings_, monitor_); }
+  void restore(std::string_view state) override {
+    check(from_bytes(state, is_told_, warnings_, monitor_), "GivenMasks: not a state of it");
   }
   [[nodiscard]] std::string name() const override { return "masks"; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }

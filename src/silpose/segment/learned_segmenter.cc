@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "silpose/base/state_bytes.h"
 #include "silpose/segment/edge_matte.h"
 #include "silpose/segment/mask_confidence.h"
 #include "silpose/segment/plate.h"
@@ -64,6 +65,13 @@ class LearnedSegmenter : public Segmenter {
     return judged;
   }
 
+  [[nodiscard]] std::string state() const override {
+    return to_bytes(monitor_, square_, num_without_, num_lost_, saw_others_);
+  }
+  void restore(std::string_view state) override {
+    check(from_bytes(state, monitor_, square_, num_without_, num_lost_, saw_others_),
+          "LearnedSegmenter: not a state of it");
+  }
   [[nodiscard]] std::vector<std::string> warnings() const override {
     std::vector<std::string> warnings;
     if (num_lost_ > 0) {

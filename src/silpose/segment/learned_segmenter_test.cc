@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -69,6 +70,18 @@ TEST(LearnedSegmenter, SaysWhenThePersonWasLost) {
   EXPECT_TRUE(learned->segment(scene.draw(0), 1).value().nothing_found);
   EXPECT_FALSE(learned->segment(scene.draw(4), 2).value().nothing_found);
   EXPECT_THAT(learned->warnings(), testing::ElementsAre(HasSubstr("lost 1 time")));
+}
+
+TEST(LearnedSegmenter, GoesOnFromItsState) {
+  const ColourScene scene(sequence(), 0);
+  const auto whole = segmenter(), second = segmenter();
+  for (const int frame : {4, 0, 4, 5}) (void)whole->segment(scene.draw(frame), frame).value();
+  second->restore(whole->state());
+  const Segmentation expected = whole->segment(scene.draw(6), 6).value();
+  const Segmentation found = second->segment(scene.draw(6), 6).value();
+  EXPECT_EQ(found.mask, expected.mask);
+  EXPECT_TRUE(std::ranges::equal(found.confidence.pixels(), expected.confidence.pixels()));
+  EXPECT_EQ(second->warnings(), whole->warnings());
 }
 
 TEST(LearnedSegmenter, CountsOnlyWhoIsInTheRegion) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 #include <vector>
 
 #include "silpose/image/image.h"
@@ -17,6 +18,8 @@ struct PictureSquare {
 
   // A point of the square, from (0, 0) top left to (1, 1) bottom right, in the picture.
   [[nodiscard]] std::array<double, 2> in_picture(double u, double v) const;
+
+  static auto members(auto& s) { return std::tie(s.x, s.y, s.side, s.turn_rad); }
 };
 
 // Of `side` = 2.5 times the distance from (x, y), its middle, to (up_x, up_y), which lies straight above in it.

@@ -7,8 +7,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "silpose/base/check.h"
 #include "silpose/base/progress.h"
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
@@ -43,6 +45,14 @@ class Segmenter {
 
   // Pictures before this one serve to learn from and are not to be tracked.
   [[nodiscard]] virtual int64_t first_index() const { return 0; }
+
+  // Learns from every picture: also those that are not to be tracked must be shown to it.
+  [[nodiscard]] virtual bool sees_all() const { return false; }
+
+  // What it carries from picture to picture besides that: another one, made alike, goes on from it as this one would.
+  // Errors: restore() throws std::invalid_argument for what is no such state.
+  [[nodiscard]] virtual std::string state() const { return {}; }
+  virtual void restore(std::string_view state) { check(state.empty(), "Segmenter: not a state of it"); }
 
   // What the user should know about this input, one line each; may grow while it runs.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }

@@ -76,6 +76,28 @@ TEST_F(SegmenterTest, BackgroundOfTheWholeClip) {
   expect_finds_subject(*segmenter, 0);
 }
 
+// Each goes on from its state as the one that told it; one that learns online from seeing all.
+TEST_F(SegmenterTest, GoesOnFromItsState) {
+  write_masks("masks", kFrames);
+  const SegmenterOptions kinds[] = {
+      {.kind = "background"}, {.kind = "background", .background = "online"}, {.kind = "masks", .masks = at("masks")}};
+  for (const SegmenterOptions& options : kinds) {
+    const auto whole = make_segmenter(at("clip"), options).value();
+    const auto second = make_segmenter(at("clip"), options).value();
+    for (int i = 0; i < kFrames; ++i) {
+      if (i == 30) second->restore(whole->state());
+      const ByteImage shown = i == 35 ? picture(0) : picture(i);  // lost for once: the area jumps
+      const Segmentation expected = whole->segment(shown, i).value();
+      if (i < 30 && !second->sees_all()) continue;
+      const Segmentation found = second->segment(shown, i).value();
+      EXPECT_EQ(found.mask, expected.mask) << whole->name() << " " << i;
+      EXPECT_TRUE(std::ranges::equal(found.confidence.pixels(), expected.confidence.pixels())) << i;
+      EXPECT_EQ(found.trust, expected.trust) << whole->name() << " " << i;
+    }
+    EXPECT_THROW(second->restore("x"), std::invalid_argument);
+  }
+}
+
 TEST_F(SegmenterTest, BackgroundOfTheLeadIn) {
   const auto segmenter = make_segmenter(at("clip"), {.background = "lead-in:1", .default_fps = 10}).value();
   EXPECT_EQ(segmenter->first_index(), 10);

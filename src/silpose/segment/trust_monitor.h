@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <tuple>
 
 #include "silpose/segment/segmenter.h"
 
@@ -13,6 +14,8 @@ class TrustMonitor {
  public:
   // Judges the masks of a video in their order.
   Segmentation judge(Mask mask, ByteImage confidence = {});
+
+  static auto members(auto& m) { return std::tie(m.recent_areas_); }
 
  private:
   std::deque<int64_t> recent_areas_;

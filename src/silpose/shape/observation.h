@@ -2,6 +2,7 @@
 // it. Threads: a value.
 #pragma once
 
+#include <tuple>
 #include <vector>
 
 #include "silpose/image/mask.h"
@@ -14,6 +15,8 @@ struct Trust {
   bool nothing_found = false;   // no blob counts
   bool touches_border = false;  // part of the subject may be outside the picture
   bool area_jumped = false;     // area changed by more than the segmenter's limit against the recent median
+
+  static auto members(auto& t) { return std::tie(t.overall, t.nothing_found, t.touches_border, t.area_jumped); }
 };
 
 struct Observation {

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "silpose/base/check.h"
 #include "silpose/base/clock.h"
+#include "silpose/base/state_bytes.h"
 #include "silpose/filter/log_weights.h"
 #include "silpose/track/pose_estimate.h"
 
@@ -104,6 +106,19 @@ FilterReport FittedFilter::report() {
   FilterReport report;
   report.effective_sample_size = effective_sample_size(particles_.weights());
   return report;
+}
+
+std::string FittedFilter::state() const {
+  return to_bytes(mixture_.state(), noise_, sought_, from_body_.dofs, from_body_.landmarks);
+}
+
+void FittedFilter::restore(std::string_view state) {
+  MixtureFilter::State mixture;
+  check(from_bytes(state, mixture, noise_, sought_, from_body_.dofs, from_body_.landmarks) &&
+            (noise_.empty() || noise_.size() == fine_->cameras().size()),
+        "FittedFilter: not a state of it");
+  mixture_.restore(std::move(mixture));
+  if (!mixture_.hypotheses().empty()) report();
 }
 
 std::vector<double> FittedFilter::estimate() const {

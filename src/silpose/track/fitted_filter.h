@@ -29,6 +29,8 @@ class FittedFilter final : public PoseFilter {
   [[nodiscard]] PoseSpread spread() const override;
 
   [[nodiscard]] std::vector<double> noise() const override { return noise_; }
+  [[nodiscard]] std::string state() const override;
+  void restore(std::string_view state) override;
 
  private:
   void begin_noise(const CoverageEvidence& evidence);

@@ -119,6 +119,17 @@ void MixtureFilter::coast(double dt_s) {
   ++steps_;
 }
 
+void MixtureFilter::restore(State state) {
+  const Eigen::Index size = 2 * Eigen::Index{fine_->body().skeleton.num_dofs()};
+  for (const GaussianComponent& hypothesis : state.hypotheses) {
+    check(
+        hypothesis.mean.size() == size && hypothesis.covariance.rows() == size && hypothesis.covariance.cols() == size,
+        "MixtureFilter: hypotheses of {} numbers for a body of {}", hypothesis.mean.size(), size);
+  }
+  hypotheses_ = std::move(state.hypotheses);
+  steps_ = state.steps;
+}
+
 // Other limbs for the best of what was fitted: a limb that jumped is free to be anywhere near where it landed.
 std::vector<MixtureFilter::Child> MixtureFilter::jumps_from(const CoverageEvidence& evidence,
                                                             const std::vector<Child>& fitted) const {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <memory>
+#include <tuple>
 #include <vector>
 
 #include "silpose/filter/gaussian_mixture.h"
@@ -47,6 +48,16 @@ class MixtureFilter {
 
   // Best first, weights normalised.
   [[nodiscard]] std::span<const GaussianComponent> hypotheses() const { return hypotheses_; }
+
+  // What another filter of the same options and body goes on from, as this one would.
+  // Errors: restore() throws std::invalid_argument for hypotheses of another size.
+  struct State {
+    std::vector<GaussianComponent> hypotheses;
+    uint64_t steps = 0;
+    static auto members(auto& s) { return std::tie(s.hypotheses, s.steps); }
+  };
+  [[nodiscard]] State state() const { return {hypotheses_, steps_}; }
+  void restore(State state);
 
  private:
   struct Child;

@@ -76,7 +76,7 @@ TEST(Plausibility, WhatIsUnusualCostsMoreButNeverTearsBack) {
     pose[*skeleton.find_dof(dof)] += to_radians(degrees);
     return Added(plausibility, pose, 1).cost - Added(plausibility, pose, 0).cost;
   };
-  EXPECT_EQ(cost_of("root_tx", 60), 0);  // a metre aside
+  EXPECT_EQ(cost_of("root_tx", 60), 0);                                    // a metre aside
   EXPECT_GT(cost_of("abdomen_rx", 20), 2 * cost_of("right_shin_rx", 20));  // a knee bends more than a back
   EXPECT_GT(cost_of("root_rx", 30), 1);
   EXPECT_NEAR(cost_of("root_rx", 330), cost_of("root_rx", -30), 1e-9);

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/base/state_bytes.h"
 #include "silpose/filter/estimate.h"
 #include "silpose/track/fitted_filter.h"
 #include "silpose/track/pose_estimate.h"
@@ -74,6 +76,12 @@ class JointFilter final : public PoseFilter {
   const ParticleSet& particles() const override { return filter_.particles(); }
   std::vector<double> estimate() const override { return filter_.estimate(); }
   PoseSpread spread() const override { return spread_of(likelihood_.body(), particles()); }
+  std::string state() const override { return to_bytes(held_, filter_.state()); }
+  void restore(std::string_view state) override {
+    std::optional<FilterState> of_filter;
+    check(from_bytes(state, held_, of_filter), "JointFilter: not a state of it");
+    filter_.restore(std::move(of_filter));
+  }
 
  private:
   SilhouetteLikelihood likelihood_;
@@ -120,6 +128,16 @@ class TwoFilters final : public PoseFilter {
   const ParticleSet& particles() const override { return particles_; }
   std::vector<double> estimate() const override { return estimate_; }
   PoseSpread spread() const override { return spread_of(whole_.body(), particles_); }
+  std::string state() const override { return to_bytes(estimate_, pose_filter_.state(), root_filter_.state()); }
+  void restore(std::string_view state) override {
+    std::optional<FilterState> of_pose, of_root;
+    check(from_bytes(state, estimate_, of_pose, of_root) && of_pose.has_value() == of_root.has_value(),
+          "TwoFilters: not a state of it");
+    const bool is_started = of_pose.has_value();
+    pose_filter_.restore(std::move(of_pose));
+    root_filter_.restore(std::move(of_root));
+    if (is_started) combine();
+  }
 
  private:
   // Pose particles, each with a root translation of the root filter's.

@@ -10,6 +10,8 @@
 
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "silpose/filter/particle_set.h"
@@ -47,6 +49,11 @@ class PoseFilter {
   [[nodiscard]] virtual PoseSpread spread() const = 0;
   // Outline noise that was found, in units of pixel_unit^3 [C]; empty where a filter does not look.
   [[nodiscard]] virtual std::vector<double> noise() const { return {}; }
+
+  // What another filter of the same options, body and cameras goes on from, as this one would.
+  // Errors: restore() throws std::invalid_argument for what is no such state.
+  [[nodiscard]] virtual std::string state() const = 0;
+  virtual void restore(std::string_view state) = 0;
 };
 
 // What filters compare with: renderers of the tracker's level of detail, one a camera, for those that sample; a fine

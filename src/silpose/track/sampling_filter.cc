@@ -38,7 +38,10 @@ void SamplingFilter::start(std::span<const double> pose) {
     deviation[d] = moves ? deviation[d] * std::sqrt(kStartFrames) : 0;
   }
   motion_->diffuse(states, deviation, seed_, kStartStream);
+  make_filter(std::move(states));
+}
 
+void SamplingFilter::make_filter(StateBatch states) {
   if (*options_.num_layers == 1) {
     // The option is a share up to and including 1, at which every step resamples.
     const double below = options_.resample_below >= 1 ? 2 : options_.resample_below;
@@ -49,9 +52,9 @@ void SamplingFilter::start(std::span<const double> pose) {
                                    .survival_rate = kSurvivalRate,
                                    .deviation = {motion_->deviation().begin(), motion_->deviation().end()},
                                    .adaptive_noise = true,
-                                   .circular = periodic_dofs(skeleton),
+                                   .circular = periodic_dofs(options_.body->skeleton),
                                    .seed = seed_};
-    for (const auto& limb : limb_blocks(skeleton)) annealed.blocks.push_back(motion_->columns_of(limb));
+    for (const auto& limb : limb_blocks(options_.body->skeleton)) annealed.blocks.push_back(motion_->columns_of(limb));
     filter_.emplace<AnnealedFilter>(std::move(states), resampler_, std::move(annealed));
   }
 }
@@ -126,6 +129,27 @@ const ParticleSet& SamplingFilter::particles() const {
   if (const auto* annealed = std::get_if<AnnealedFilter>(&filter_)) return annealed->particles();
   check(std::holds_alternative<ParticleFilter>(filter_), "SamplingFilter: particles before start");
   return std::get<ParticleFilter>(filter_).particles();
+}
+
+std::optional<FilterState> SamplingFilter::state() const {
+  if (const auto* annealed = std::get_if<AnnealedFilter>(&filter_)) return annealed->state();
+  if (const auto* plain = std::get_if<ParticleFilter>(&filter_)) return plain->state();
+  return std::nullopt;
+}
+
+void SamplingFilter::restore(std::optional<FilterState> state) {
+  filter_.emplace<std::monostate>();
+  if (!state) return;
+  const ParticleSet& particles = state->particles;
+  check(particles.size() == *options_.num_particles && std::ssize(particles.log_weights) == particles.size() &&
+            particles.states.cols() == std::ssize(motion_->deviation()),
+        "SamplingFilter: not a state of it: {} particles of {} numbers", particles.size(), particles.states.cols());
+  make_filter(particles.states);
+  if (auto* annealed = std::get_if<AnnealedFilter>(&filter_)) {
+    annealed->restore(std::move(*state));
+  } else {
+    std::get<ParticleFilter>(filter_).restore(std::move(*state));
+  }
 }
 
 std::vector<double> SamplingFilter::estimate() const {

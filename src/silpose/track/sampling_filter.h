@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 #include <vector>
@@ -33,6 +34,11 @@ class SamplingFilter {
   [[nodiscard]] const ParticleSet& particles() const;
   [[nodiscard]] std::vector<double> estimate() const;  // [D]
 
+  // What another of the same options goes on from; nothing before start().
+  // Errors: restore() throws std::invalid_argument for particles of another size.
+  [[nodiscard]] std::optional<FilterState> state() const;
+  void restore(std::optional<FilterState> state);
+
  private:
   static constexpr uint64_t kStartStream = ~uint64_t{0};
   static constexpr uint64_t kRegenerateSeed = 0x7265;
@@ -41,6 +47,7 @@ class SamplingFilter {
   std::vector<int> free_columns() const { return columns_where(true); }
   std::vector<int> held_columns() const { return columns_where(false); }
   void hold(StateBatch& states, std::span<const double> held) const;
+  void make_filter(StateBatch states);
 
   const TrackerOptions& options_;
   const SilhouetteLikelihood& likelihood_;

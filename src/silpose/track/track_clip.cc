@@ -3,10 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
 
+#include "silpose/base/check.h"
 #include "silpose/base/clock.h"
 #include "silpose/base/parallel.h"
+#include "silpose/base/state_bytes.h"
 #include "silpose/motion/noise.h"
 #include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
@@ -38,13 +42,21 @@ double clarity(const ClipInstant& instant) {
 // What was held possible at one instant: poses and velocities [K, 2 D] of one or more passes, in clip time.
 struct Possible {
   std::vector<VectorXd> poses, velocities;
-  std::vector<double> energies;
+  std::vector<double> energies;  // found once all passes are done
+
+  static auto members(auto& p) { return std::tie(p.poses, p.velocities); }
 };
 
 class ClipTracker {
  public:
-  ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress)
-      : options_(options.resolved()), clip_(clip), progress_(progress), possible_(clip.size()), seen_(clip.size()) {
+  ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress,
+              const ClipResume& resume)
+      : options_(options.resolved()),
+        clip_(clip),
+        progress_(progress),
+        resume_(resume),
+        possible_(clip.size()),
+        seen_(clip.size()) {
     options_.check();
     for (size_t t = 0; t < clip.size(); ++t) seen_[t] = any_has_a_say(clip[t].observations);
     const auto body = level_of_detail(options_.body, *options_.lod_vertices);
@@ -60,20 +72,23 @@ class ClipTracker {
     last_ = clip_.size() - 1;
     while (!seen_[last_]) --last_;
 
+    if (resume_.state.empty()) {
+      start_ = clearest();
+      start_seconds_ = stopwatch.seconds();
+      if (stopped_) return {};
+    } else {
+      restore(resume_.state);
+    }
     // From the clearest instant to the end, back to the beginning, and once more to the end: whatever one pass
     // misses, another may have found.
-    const size_t start = clearest();
-    start_seconds_ = stopwatch.seconds();
-    if (stopped_) return {};
-    pass(start, last_, std::nullopt);
-    if (!stopped_) pass(last_, first_, last_pose_);
-    if (!stopped_) pass(first_, last_, last_pose_);
-    if (stopped_) return {};
+    const size_t ends[kNumPasses][2] = {{start_, last_}, {last_, first_}, {first_, last_}};
+    while (pass_ < kNumPasses && !stopped_) pass(ends[pass_][0], ends[pass_][1]);
+    if (stopped_) return tell_and_stop();
     const SmoothedPoses smoothed = smooth_poses(
         *likelihood_, *plausibility_, clip_.subspan(first_, last_ - first_ + 1),
         {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
         best_path(), {.noise = noise_}, [&] { return proceed(); });
-    if (stopped_) return {};
+    if (stopped_) return tell_and_stop();
     noise_ = smoothed.noise;
     return reports(smoothed);
   }
@@ -124,30 +139,55 @@ class ClipTracker {
   }
 
   // Tracks from one instant to another, backwards where that lies before, and keeps all hypotheses.
-  void pass(size_t from, size_t to, const std::optional<std::vector<double>>& pose) {
+  void pass(size_t from, size_t to) {
     TrackerOptions options = options_of_pass(options_);
-    if (pose) options.initial_pose = pose;
-    Tracker tracker(options);
+    if (!last_pose_.empty()) options.initial_pose = last_pose_;
+    tracker_.emplace(options);
+    if (!resumed_tracker_.empty()) tracker_->restore(std::exchange(resumed_tracker_, {}));
     const double direction = to >= from ? 1 : -1;
     const size_t count = (to >= from ? to - from : from - to) + 1;
     const double share = kPassShare * static_cast<double>(count) / static_cast<double>(clip_.size());
-    const double done_before = done_;
     const auto D = static_cast<Eigen::Index>(options_.body->skeleton.num_dofs());
-    for (size_t i = 0; i < count; ++i) {
-      const size_t t = to >= from ? from + i : from - i;
+    while (step_ < count) {
+      const size_t t = to >= from ? from + step_ : from - step_;
       const ClipInstant& instant = clip_[t];
       const int64_t time = to >= from ? instant.time_ns - clip_[from].time_ns : clip_[from].time_ns - instant.time_ns;
-      const StepReport report = tracker.step(instant.observations, instant.frame_idx, time);
-      if (report.pose.empty()) continue;
-      last_pose_ = report.pose;
-      const StateBatch& states = tracker.particles();
-      for (Eigen::Index k = 0; k < states.rows(); ++k) {
-        possible_[t].poses.emplace_back(states.row(k).head(D).transpose());
-        possible_[t].velocities.emplace_back(direction * states.row(k).tail(D).transpose());
+      const StepReport report = tracker_->step(instant.observations, instant.frame_idx, time);
+      ++step_;
+      if (!report.pose.empty()) {
+        last_pose_ = report.pose;
+        const StateBatch& states = tracker_->particles();
+        for (Eigen::Index k = 0; k < states.rows(); ++k) {
+          possible_[t].poses.emplace_back(states.row(k).head(D).transpose());
+          possible_[t].velocities.emplace_back(direction * states.row(k).tail(D).transpose());
+        }
       }
-      if (!proceed(done_before + share * static_cast<double>(i + 1) / static_cast<double>(count))) return;
+      if (!proceed(done_ + share / static_cast<double>(count))) return;
+      tell();
     }
-    noise_ = tracker.noise();
+    noise_ = tracker_->noise();
+    tracker_.reset();
+    step_ = 0;
+    ++pass_;
+  }
+
+  void tell() const {
+    if (resume_.keep) resume_.keep([this] { return state(); });
+  }
+  std::vector<StepReport> tell_and_stop() const {
+    tell();
+    return {};
+  }
+
+  [[nodiscard]] std::string state() const {
+    return to_bytes(start_, pass_, step_, last_pose_, noise_, possible_, done_, start_seconds_,
+                    tracker_ ? tracker_->state() : std::string());
+  }
+  void restore(std::string_view state) {
+    check(from_bytes(state, start_, pass_, step_, last_pose_, noise_, possible_, done_, start_seconds_,
+                     resumed_tracker_) &&
+              possible_.size() == clip_.size() && start_ < clip_.size() && pass_ <= kNumPasses && step_ <= clip_.size(),
+          "track_clip: not a state of this clip");
   }
 
   // Of all that was held possible, the sequence that fits best and moves most plausibly. Source: Viterbi's algorithm.
@@ -224,7 +264,7 @@ class ClipTracker {
     double sum = std::exp(-0.5 * (own - best));
     std::vector<double> weights;
     for (const double energy : possible.energies) {
-      weights.push_back(std::exp(-0.5 * (energy - best)) / kNumPasses);
+      weights.push_back(std::exp(-0.5 * (energy - best)) / static_cast<double>(kNumPasses));
       sum += weights.back();
     }
     const auto landmarks = landmark_positions(body, report.pose);
@@ -292,7 +332,7 @@ class ClipTracker {
     return reports;
   }
 
-  static constexpr double kNumPasses = 3;
+  static constexpr size_t kNumPasses = 3;
   static constexpr int kBodyErrorVertices = 800;
   static constexpr double kPassShare = 0.35;     // of the whole work, one pass over the whole clip
   static constexpr double kTransitionScale = 4;  // times acceleration_deviation: hypotheses are fits, not truths
@@ -301,12 +341,16 @@ class ClipTracker {
   TrackerOptions options_;
   std::span<const ClipInstant> clip_;
   const ClipProgress& progress_;
+  const ClipResume& resume_;
   std::shared_ptr<const CoverageLikelihood> likelihood_;
   std::shared_ptr<const Plausibility> plausibility_;
   std::vector<Possible> possible_;  // [T]
   std::vector<bool> seen_;          // [T]
   std::vector<double> last_pose_, noise_;
   size_t first_ = 0, last_ = 0;
+  size_t start_ = 0, pass_ = 0, step_ = 0;  // where the passes begin; the pass under way and how many steps it took
+  std::optional<Tracker> tracker_;          // of the pass under way
+  std::string resumed_tracker_;             // its state when an earlier call was stopped
   double done_ = 0, start_seconds_ = 0;
   bool stopped_ = false;
 };
@@ -322,15 +366,26 @@ TrackerOptions options_of_pass(const TrackerOptions& options) {
 }
 
 std::vector<StepReport> track_clip(const TrackerOptions& options, std::span<const ClipInstant> clip,
-                                   const ClipProgress& progress) {
+                                   const ClipProgress& progress, const ClipResume& resume) {
   const TrackerOptions resolved = options.resolved();
-  if (*resolved.smooth && !clip.empty()) return ClipTracker(options, clip, progress).run();
+  if (*resolved.smooth && !clip.empty()) return ClipTracker(options, clip, progress, resume).run();
   Tracker tracker(options);
   std::vector<StepReport> reports;
-  reports.reserve(clip.size());
-  for (const ClipInstant& instant : clip) {
+  if (!resume.state.empty()) {
+    std::string of_tracker;
+    check(from_bytes(resume.state, reports, of_tracker) && reports.size() <= clip.size(),
+          "track_clip: not a state of this clip");
+    tracker.restore(of_tracker);
+    for (size_t t = 0; t < reports.size(); ++t) {
+      for (const Observation& observation : clip[t].observations) reports[t].observed.push_back(observation.mask);
+    }
+  }
+  while (reports.size() < clip.size()) {
+    const ClipInstant& instant = clip[reports.size()];
     reports.push_back(tracker.step(instant.observations, instant.frame_idx, instant.time_ns));
-    if (progress && !progress(reports.size(), clip.size())) break;
+    const bool goes_on = !progress || progress(reports.size(), clip.size());
+    if (resume.keep) resume.keep([&] { return to_bytes(reports, tracker.state()); });
+    if (!goes_on) break;
   }
   return reports;
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "silpose/shape/observation.h"
@@ -27,9 +28,17 @@ TrackerOptions options_of_pass(const TrackerOptions& options);
 // Told after each instant; tracking ends early when it returns false.
 using ClipProgress = std::function<bool(size_t instants_done, size_t instants_total)>;
 
+// What lets the tracking of a clip go on where an earlier call, with the same arguments, was stopped.
+struct ClipResume {
+  std::string state;  // which that call told last; empty: from the start
+  // Called after each instant of each pass, and when tracking ends early. `state()` tells what is done so far.
+  std::function<void(const std::function<std::string()>& state)> keep;
+};
+
 // One report an instant that was tracked, in order. Times must grow.
-// Errors: throws std::invalid_argument as TrackerOptions::check(), or where observations do not fit the cameras.
+// Errors: throws std::invalid_argument as TrackerOptions::check(), where observations do not fit the cameras, or for a
+// state of another call.
 std::vector<StepReport> track_clip(const TrackerOptions& options, std::span<const ClipInstant> clip,
-                                   const ClipProgress& progress = {});
+                                   const ClipProgress& progress = {}, const ClipResume& resume = {});
 
 }  // namespace silpose

@@ -127,5 +127,47 @@ TEST_F(ClipTest, StopsWhenAskedAndTellsGrowingProgress) {
   EXPECT_TRUE(track_clip(accurate(), clip(6, 0, 0), [](size_t, size_t) { return false; }).empty());
 }
 
+// Stopped after any instant of any pass, and while smoothing, another call goes on to the same reports.
+TEST_F(ClipTest, GoesOnFromWhereItWasStoppedBitForBit) {
+  const auto instants = clip(6, 3, 4);
+  for (const bool smooth : {true, false}) {
+    TrackerOptions options = accurate();
+    options.smooth = smooth;
+    const std::vector<StepReport> whole = track_clip(options, instants);
+    ASSERT_EQ(whole.size(), 6u);
+    for (const int stop : smooth ? std::vector<int>{1, 3, 8, 12, 17, 19} : std::vector<int>{1, 4}) {
+      std::string state;
+      ClipResume resume{.state = {}, .keep = [&](const auto& told) { state = told(); }};
+      int asked = 0;
+      const auto stopped = track_clip(
+          options, instants, [&](size_t, size_t) { return ++asked < stop; }, resume);
+      ASSERT_LT(stopped.size(), 6u) << stop;
+      ASSERT_FALSE(state.empty()) << stop;
+      int left = 0;
+      resume.state = state;
+      const auto found = track_clip(
+          options, instants, [&](size_t, size_t) { return ++left > 0; }, resume);
+      EXPECT_GT(asked + left, stop) << stop;
+      // 18 steps at most, 12 iterations of the smoother: none of those before the stop is taken again.
+      EXPECT_LT(left, 33 - stop) << stop;
+      ASSERT_EQ(found.size(), whole.size()) << stop;
+      for (size_t t = 0; t < found.size(); ++t) {
+        EXPECT_EQ(found[t].pose, whole[t].pose) << stop << ", " << t;
+        EXPECT_EQ(found[t].spread, whole[t].spread) << stop << ", " << t;
+        EXPECT_EQ(found[t].state, whole[t].state) << stop << ", " << t;
+        EXPECT_EQ(found[t].observed, whole[t].observed) << stop << ", " << t;
+      }
+    }
+  }
+}
+
+TEST_F(ClipTest, RefusesAStateOfAnotherClip) {
+  std::string state;
+  const ClipResume keep{.state = {}, .keep = [&](const auto& told) { state = told(); }};
+  track_clip(
+      accurate(), clip(4, 9, 9), [&](size_t, size_t) { return state.empty(); }, keep);
+  EXPECT_THROW(track_clip(accurate(), clip(3, 9, 9), {}, {.state = state, .keep = {}}), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace silpose

@@ -6,6 +6,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/clock.h"
+#include "silpose/base/state_bytes.h"
 #include "silpose/filter/estimate.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/segment/background_segmenter.h"
@@ -107,6 +108,12 @@ struct Tracker::Impl {
     report.seconds.start += stopwatch.seconds();
   }
 
+  // All that goes from step to step but the filter's own.
+  static auto members(auto& t) {
+    return std::tie(t.last_pose, t.started, t.num_seeks, t.seek_interval_s, t.since_seek_s, t.accuracy_of_late,
+                    t.deviation_of_late, t.steps, t.last_time_ns, t.last_seen_ns);
+  }
+
   TrackerOptions options;
   Likelihoods likelihoods;
   std::unique_ptr<PoseFilter> filter;
@@ -186,5 +193,13 @@ const StateBatch& Tracker::particles() const { return impl_->filter->particles()
 std::span<const double> Tracker::log_weights() const { return impl_->filter->particles().log_weights; }
 
 std::vector<double> Tracker::noise() const { return impl_->filter->noise(); }
+
+std::string Tracker::state() const { return to_bytes(*impl_, impl_->filter->state()); }
+
+void Tracker::restore(std::string_view state) {
+  std::string of_filter;
+  check(from_bytes(state, *impl_, of_filter), "Tracker: not a state of it");
+  impl_->filter->restore(of_filter);
+}
 
 }  // namespace silpose

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <string_view>
 
 #include "silpose/filter/state_batch.h"
 #include "silpose/image/frame.h"
@@ -39,6 +41,12 @@ class Tracker {
   // Outline noise that the fitted filter found, in units of pixel_unit^3 (likelihood/coverage_likelihood.h). [C], or
   // empty.
   [[nodiscard]] std::vector<double> noise() const;
+
+  // What another tracker of the same options goes on from, as this one would: the same reports, bit for bit, from the
+  // same program. What step(frame) learned of the background is not in it.
+  // Errors: restore() throws std::invalid_argument for what is no such state.
+  [[nodiscard]] std::string state() const;
+  void restore(std::string_view state);
 
  private:
   struct Impl;

@@ -91,6 +91,44 @@ TEST_P(TrackerTest, LimitsAlwaysHold) {
   }
 }
 
+// Stopped while waiting, tracking or coasting, another tracker goes on as the first would have.
+TEST_P(TrackerTest, GoesOnFromItsStateBitForBit) {
+  const auto seen = [&](int t) { return t == 0 || (t >= 4 && t < 6) ? nothing() : observe(t); };
+  constexpr int kSteps = 8;
+  std::vector<StepReport> expected;
+  std::vector<std::string> states;
+  Tracker whole(options());
+  for (int t = 0; t < kSteps; ++t) {
+    states.push_back(whole.state());
+    expected.push_back(step(whole, seen(t), t));
+  }
+  for (const int stop : {1, 3, 5}) {
+    Tracker second(options());
+    second.restore(states[static_cast<size_t>(stop)]);
+    for (int t = stop; t < (stop == 1 ? 3 : kSteps); ++t) {
+      const StepReport found = step(second, seen(t), t), &whole_report = expected[static_cast<size_t>(t)];
+      EXPECT_EQ(found.state, whole_report.state) << t;
+      EXPECT_EQ(found.pose, whole_report.pose) << t;
+      EXPECT_EQ(found.mode, whole_report.mode) << t;
+      EXPECT_EQ(found.spread, whole_report.spread) << t;
+      EXPECT_EQ(found.landmark_spread, whole_report.landmark_spread) << t;
+      EXPECT_EQ(found.effective_sample_size, whole_report.effective_sample_size) << t;
+    }
+    if (stop > 1) {
+      EXPECT_EQ(whole.noise(), second.noise());
+    }
+  }
+}
+
+TEST_P(TrackerTest, RefusesAnothersState) {
+  Tracker tracker(options());
+  step(tracker, observe(0), 0);
+  const std::string state = tracker.state();
+  Tracker other(options());
+  EXPECT_THROW(other.restore(state.substr(0, state.size() - 1)), std::invalid_argument);
+  EXPECT_THROW(other.restore(""), std::invalid_argument);
+}
+
 TEST_P(TrackerTest, WaitsUntilSomethingIsSeenThenCoastsWithGrowingSpread) {
   Tracker tracker(options());
   EXPECT_EQ(step(tracker, nothing(), 0).state, StepReport::State::kWaiting);
