@@ -20,7 +20,10 @@ std::string name_list(const std::vector<PinholeCamera>& cameras) {
 }  // namespace
 
 void add_camera_options(CLI::App& command, CameraOptions& options) {
-  command.add_option("--camera", options.file, "Calibration file (TOML); without it a level camera is assumed");
+  command.add_option(
+      "--camera", options.file,
+      "Calibration file (TOML); of one recorded clip without it, track estimates the camera from the person, "
+      "or, with assumed, takes it to be level and 1.5 m up");
   command.add_option("--camera-name", options.names, "Which camera of the file, once a video")->allow_extra_args(false);
   command.add_option("--camera-up", options.up, "Up axis of the file's world, where it does not say")
       ->check(CLI::IsMember({"y", "z"}));
@@ -30,8 +33,8 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
 
 Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<PictureSize>& sizes) {
   CameraChoice choice;
-  if (options.file.empty()) {
-    check(!sizes.empty(), "choose_cameras: neither a file nor a picture size");
+  check(!options.file.empty() || !sizes.empty(), "choose_cameras: neither a file nor a picture size");
+  if (!options.has_file() && !sizes.empty()) {
     if (!options.names.empty()) throw UsageError("--camera-name: needs --camera FILE.toml");
     if (sizes.size() > 1) throw UsageError("several cameras need --camera FILE.toml");
     choice.cameras.push_back(default_camera(sizes[0].width, sizes[0].height));

@@ -31,7 +31,7 @@ Result<std::vector<ClipInstant>> read_clip_of(ObservationSource& source, Console
 
 Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, Console& console) {
   if (options.input.videos.empty()) throw UsageError("VIDEO is missing");
-  if (options.camera.file.empty()) {
+  if (!options.camera.has_file()) {
     throw UsageError("--camera is missing: a body is fitted with cameras that are known, one with its floor");
   }
   const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();

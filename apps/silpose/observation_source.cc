@@ -215,6 +215,11 @@ void ObservationSource::restore(std::string_view state) {
   for (size_t camera = 0; camera < segmenters_.size(); ++camera) segmenters_[camera]->restore(of_segmenters[camera]);
 }
 
+void ObservationSource::thin_out_to(int64_t count) {
+  constexpr int64_t kUnknownLength = 4;
+  stride_ = num_expected() > 0 ? (num_expected() + count - 1) / count : kUnknownLength;
+}
+
 Result<std::optional<Instant>> ObservationSource::read(bool segments) {
   const Stopwatch decoding;
   double segment_s = 0;
@@ -226,6 +231,7 @@ Result<std::optional<Instant>> ObservationSource::read(bool segments) {
     for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
       wanted = wanted && video_->own_index(static_cast<int>(camera)) >= segmenters_[camera]->first_index();
     }
+    wanted = wanted && num_wanted_++ % stride_ == 0;
     Instant instant;
     for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
       if (!(wanted && segments) && !segmenters_[camera]->sees_all()) continue;

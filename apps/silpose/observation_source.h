@@ -49,6 +49,9 @@ class ObservationSource {
   // of another size. Throws UsageError for options that do not fit together.
   static Result<ObservationSource> open(const InputOptions& options, Console& console);
 
+  // From here on about `count` instants are given, evenly over the clip; the others are not segmented.
+  void thin_out_to(int64_t count);
+
   // The next instant to be tracked, nothing at the end. Errors: those of the video and of the segmenter.
   Result<std::optional<Instant>> next();
   // The same, without masks: only segmenters that must see every picture are shown it.
@@ -76,6 +79,7 @@ class ObservationSource {
   std::unique_ptr<Video> video_;
   std::vector<std::unique_ptr<Segmenter>> segmenters_;
   std::vector<std::string> warnings_;
+  int64_t stride_ = 1, num_wanted_ = 0;
   int64_t num_seen_ = 0, num_cut_ = 0;  // masks with a subject, and of these at the edge of the picture
   double learning_s_ = 0;
   int64_t start_ns_ = 0, end_ns_ = 0;  // of the stretch that --start and --end choose

@@ -43,9 +43,11 @@ std::optional<std::string> difference(const OptionLines& earlier, const OptionLi
 }  // namespace
 
 std::vector<std::pair<std::string, double>> StageSeconds::list() const {
-  return {{"background", background}, {"decode", decode},       {"segment", segment},
-          {"start", start},           {"propagate", propagate}, {"likelihood", likelihood},
-          {"resample", resample},     {"smooth", smooth},       {"write", write}};
+  return {{"camera", camera},         {"background", background},
+          {"decode", decode},         {"segment", segment},
+          {"start", start},           {"propagate", propagate},
+          {"likelihood", likelihood}, {"resample", resample},
+          {"smooth", smooth},         {"write", write}};
 }
 
 OptionLines made_with(OptionLines options, const std::vector<PinholeCamera>& cameras, const BodyModel& body) {

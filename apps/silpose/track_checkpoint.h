@@ -24,16 +24,16 @@ namespace silpose::app {
 
 inline constexpr std::string_view kCheckpointFile = "checkpoint.bin";
 
-// Seconds by stage. `background` is what was spent before the first frame, `start` on finding a starting pose, `smooth`
-// on tracking a clip as a whole, which is not told apart further.
+// Seconds by stage. `camera` (estimating it) and `background` were spent before the first frame, `start` on finding a
+// starting pose, `smooth` on tracking a clip as a whole, which is not told apart further.
 struct StageSeconds {
-  double background = 0, decode = 0, segment = 0, start = 0, propagate = 0, likelihood = 0, resample = 0, smooth = 0,
-         write = 0;
+  double camera = 0, background = 0, decode = 0, segment = 0, start = 0, propagate = 0, likelihood = 0, resample = 0,
+         smooth = 0, write = 0;
 
   [[nodiscard]] std::vector<std::pair<std::string, double>> list() const;
   static auto members(auto& s) {
-    return std::tie(s.background, s.decode, s.segment, s.start, s.propagate, s.likelihood, s.resample, s.smooth,
-                    s.write);
+    return std::tie(s.camera, s.background, s.decode, s.segment, s.start, s.propagate, s.likelihood, s.resample,
+                    s.smooth, s.write);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "apps/silpose/body_choice.h"
+#include "apps/silpose/camera_estimate.h"
 #include "apps/silpose/command.h"
 #include "apps/silpose/option_file.h"
 #include "apps/silpose/result_directory.h"
@@ -28,8 +29,12 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   const auto pose =
       read_initial_pose(options, (*body)->skeleton, 0);  // what is wrong with it is told before the clip is read
   if (!pose) return pose.failure();
-  const Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
+  Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
   if (!cameras) return cameras.failure();
+  if (estimates_camera(options)) {
+    const Result<void> estimated = estimate_camera_of(options.input, (*body)->height_m, *cameras, console);
+    if (!estimated) return estimated.failure();
+  }
   TrackerOptions tracker = tracker_options(options, *body, cameras->cameras, common.seed);
   TrackResume resume{
       .folder = directory->path(),
@@ -49,8 +54,9 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   tracker.landmarks = (options.init == "auto" || options.init == "landmarks") && source->finds_landmarks();
 
   TrackWriter writer(directory->path(), *body, cameras->cameras, source->video().fps(), options.draw_floor);
-  const Result<Tracked> tracked = track_video(options, std::move(tracker), *source, writer, console, std::move(resume));
+  Result<Tracked> tracked = track_video(options, std::move(tracker), *source, writer, console, std::move(resume));
   if (!tracked) return tracked.failure();
+  tracked->seconds.camera = cameras->estimating_s;
 
   std::vector<std::string> warnings = cameras->warnings;
   const std::vector<std::string> of_input = source->warnings();
@@ -61,7 +67,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
     warnings.emplace_back("no person was seen: there is no pose in this result");
   }
   for (const std::string& warning : warnings) console.warning(warning);
-  const TrackTold told{options, common, writer, *source, *tracked, warnings};
+  const TrackTold told{options, common, *cameras, writer, *source, *tracked, warnings};
   if (is_recorded) {
     const Result<void> written = write_track_report(told, directory->path());
     if (!written) return written.failure();

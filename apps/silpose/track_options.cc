@@ -130,7 +130,7 @@ void check_together(const TrackOptions& options) {
   if (options.fit_body.value_or(false)) {
     if (options.each) throw UsageError("--fit-body: needs several cameras; with --each every clip has one");
     if (!*tracker.resolved().smooth) throw UsageError("--fit-body: needs --smooth");
-    if (options.camera.file.empty()) {
+    if (!options.camera.has_file()) {
       throw UsageError("--fit-body: needs --camera; without a known floor one camera tells nothing of a body's size");
     }
   }
@@ -148,6 +148,11 @@ bool fits_body(const TrackOptions& options) {
                                    *resolved.smooth && !options.each && options.input.videos.size() > 1);
 }
 
+bool estimates_camera(const TrackOptions& options) {
+  return options.camera.file.empty() && options.input.videos.size() == 1 &&
+         !options.input.videos[0].starts_with("camera:");
+}
+
 TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
                                std::vector<PinholeCamera> cameras, uint64_t seed) {
   TrackerOptions tracker = options.tracker;
@@ -155,7 +160,7 @@ TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<cons
   tracker.cameras = std::move(cameras);
   tracker.seed = seed;
   // How high an assumed camera stands is a guess.
-  if (!tracker.floor && options.camera.file.empty()) tracker.floor = false;
+  if (!tracker.floor && !options.camera.has_file()) tracker.floor = false;
   tracker.root_fixed = options.root == "fixed";
   tracker.resample_below = options.resample_below.value_or(tracker.resample_below);
   if (options.estimate == "mean") tracker.estimate = Estimate::kMean;

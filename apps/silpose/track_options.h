@@ -36,6 +36,9 @@ void check_together(const TrackOptions& options);
 // Whether the subject's bone lengths are fitted: where asked for, and by `accurate` with several cameras.
 bool fits_body(const TrackOptions& options);
 
+// Whether the camera is estimated: of one recorded clip without a calibration file.
+bool estimates_camera(const TrackOptions& options);
+
 // What the tracker is asked for, all but its first pose. Throws UsageError for what it refuses.
 TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
                                std::vector<PinholeCamera> cameras, uint64_t seed);

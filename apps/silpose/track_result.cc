@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "apps/silpose/camera_estimate.h"
 #include "apps/silpose/run_facts.h"
 #include "apps/silpose/subject_fit.h"
 #include "silpose/report/report_page.h"
@@ -32,11 +33,14 @@ std::string line_of(const PinholeCamera& camera) {
 }
 
 FactLines run_lines(const TrackTold& told) {
+  const std::string camera_file = told.options.camera.has_file() ? told.options.camera.file
+                                  : told.camera.estimate         ? "none: estimated"
+                                                                 : "none: assumed";
   FactLines lines = {{"Command", told.common.command_line},
                      {"Version", SILPOSE_VERSION},
                      {"Machine", machine_name()},
                      {"Body", told.writer.body().name},
-                     {"Camera file", told.options.camera.file.empty() ? "none: assumed" : told.options.camera.file}};
+                     {"Camera file", camera_file}};
   for (const PinholeCamera& camera : told.writer.cameras()) lines.emplace_back("Camera", line_of(camera));
   lines.emplace_back("Preset", told.options.tracker.preset);
   for (const auto& [name, value] : chosen_options(told.options, told.tracked.used)) lines.emplace_back(name, value);
@@ -75,6 +79,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run["model"] = told.options.model;
   run["body"] = told.writer.body().name;
   if (tracked.body_fit && !tracked.recording.steps.empty()) run["fitted"] = facts_of(*tracked.body_fit);
+  if (told.camera.estimate) run["camera_estimate"] = facts_of(*told.camera.estimate);
   run["frames"] = tracked.num_frames;
   run["frames_tracked"] = summary.frames_tracked;
   run["frames_coasted"] = summary.frames_coasted;

@@ -15,6 +15,7 @@ namespace silpose::app {
 struct TrackTold {
   const TrackOptions& options;
   const CommonOptions& common;
+  const CameraChoice& camera;
   const TrackWriter& writer;
   const ObservationSource& source;
   const Tracked& tracked;

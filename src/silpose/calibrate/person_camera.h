@@ -1,0 +1,49 @@
+// estimate_camera(): focal length, tilt, roll and height of a camera that nobody calibrated, from where the head and
+// the feet of an upright person on the floor are seen, and how tall the person is. A person who comes nearer tells how
+// high the camera stands and where the horizon is; one who is seen leaning at the picture's sides, where the picture
+// is tilted, tells the focal length. What a clip does not tell stays at its prior, and its deviation says so.
+// Based on: metrology of a single view (references.bib: criminisi2000), as a maximum a posteriori fit with residuals of
+// Student's t, since people stoop, jump and raise their arms. Threads: functions without state.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "silpose/geometry/camera.h"
+#include "silpose/image/mask.h"
+
+namespace silpose {
+
+// Where a mask has its upper and its lower end, pixels (the centre of the top-left pixel at 0.5).
+struct PersonExtent {
+  double time_s = 0;
+  Eigen::Vector2d head;  // middle of what is topmost above the trunk; its uppermost edge
+  Eigen::Vector2d feet;  // middle of the legs' lowest part; its lowest edge
+  [[nodiscard]] double height() const { return feet.y() - head.y(); }
+};
+
+// Its time is left to the caller. Nothing where the mask is empty, is cut by the picture's edge, is under 24 pixels
+// high, or lies rather than stands.
+[[nodiscard]] std::optional<PersonExtent> person_extent(const Mask& mask);
+
+struct Estimated {
+  double mean = 0, deviation = 0;
+};
+
+struct CameraEstimate {
+  PinholeCamera camera;  // above the world's origin by the height, the person in the middle of the clip near the origin
+  Estimated focal_px, tilt, roll, height_m;  // radians: tilt is positive where it looks down
+  double body_height_m = 0;                  // taken as known
+  size_t num_frames = 0;                     // that the estimate rests on
+};
+
+inline constexpr size_t kFewestExtents = 8;
+
+// `body_height_m` is taken as known: the camera's height grows in proportion to it. Nothing with fewer extents than
+// kFewestExtents. Errors: throws std::invalid_argument for sizes that are not positive.
+[[nodiscard]] std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> extents, int width,
+                                                            int height, double body_height_m);
+
+}  // namespace silpose

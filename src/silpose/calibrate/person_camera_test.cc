@@ -1,0 +1,156 @@
+#include "silpose/calibrate/person_camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "silpose/geometry/rigid3.h"
+
+namespace silpose {
+namespace {
+
+constexpr double kBodyHeight = 1.7;
+
+PinholeCamera camera_at(double focal_px, double height, double tilt_deg) {
+  const double tilt = to_radians(tilt_deg);
+  const Eigen::Vector3d eye(0, height, 6);
+  return look_at_camera(640, 480, focal_px, eye, eye + Eigen::Vector3d(0, -std::sin(tilt), -std::cos(tilt)));
+}
+
+// A straight, thin person whose nearest foot is 0.22 m before its axis and who stoops by 2 %, twelve times a second.
+PersonExtent extent_at(const PinholeCamera& camera, double x, double z, double time_s) {
+  PersonExtent extent{time_s, camera.project({x, 0.98 * kBodyHeight, z}).value(), {}};
+  const Eigen::Vector2d axis = camera.project({x, 0, z}).value(), toe = camera.project({x, 0, z + 0.22}).value();
+  extent.feet = {axis.x(), toe.y()};
+  return extent;
+}
+
+// Walks a zigzag between `nearest` and `farthest` (z), across the picture.
+std::vector<PersonExtent> walk(const PinholeCamera& camera, double nearest, double farthest) {
+  std::vector<PersonExtent> extents;
+  for (int i = 0; i < 96; ++i) {
+    const double way = std::abs(std::remainder(i / 24.0, 2.0));
+    extents.push_back(extent_at(camera, -1.2 + 2.4 * i / 96, nearest + (farthest - nearest) * way, i / 12.0));
+  }
+  return extents;
+}
+
+void expect_inside(const Estimated& estimate, double truth, double deviations) {
+  EXPECT_LT(std::abs(estimate.mean - truth), deviations * estimate.deviation)
+      << estimate.mean << " +- " << estimate.deviation << ", truth " << truth;
+}
+
+TEST(EstimateCamera, FindsHeightAndTilt) {
+  for (const double tilt_deg : {-8.0, 0.0, 12.0}) {
+    for (const double height : {0.8, 2.2}) {
+      const PinholeCamera truth = camera_at(650, height, tilt_deg);
+      const auto estimate = estimate_camera(walk(truth, 1, -2), 640, 480, kBodyHeight);
+      ASSERT_TRUE(estimate);
+      EXPECT_NEAR(estimate->height_m.mean, height, 0.05 * height);
+      EXPECT_NEAR(to_degrees(estimate->tilt.mean), tilt_deg, 2.5);
+      expect_inside(estimate->height_m, height, 1.5);
+      expect_inside(estimate->tilt, to_radians(tilt_deg), 1.5);
+      expect_inside(estimate->focal_px, 650, 1.5);
+      // The camera is what is said of it, and sees the same.
+      EXPECT_NEAR(estimate->camera.centre_in_world().y(), estimate->height_m.mean, 1e-9);
+      EXPECT_NEAR(estimate->camera.fx, estimate->focal_px.mean, 1e-9);
+      const Eigen::Vector3d ahead = estimate->camera.cam_from_world.rotation.row(2);
+      EXPECT_NEAR(std::asin(-ahead.y()), estimate->tilt.mean, 1e-9);
+    }
+  }
+}
+
+TEST(EstimateCamera, HeightGrowsWithTheBody) {
+  const auto extents = walk(camera_at(650, 1.2, 3), 1, -2);
+  const auto small = estimate_camera(extents, 640, 480, kBodyHeight);
+  const auto large = estimate_camera(extents, 640, 480, 1.1 * kBodyHeight);
+  EXPECT_NEAR(large->height_m.mean / small->height_m.mean, 1.1, 0.02);
+  EXPECT_EQ(large->body_height_m, 1.1 * kBodyHeight);
+}
+
+TEST(EstimateCamera, SaysHowLittleOneDepthTells) {
+  const PinholeCamera truth = camera_at(900, 1.2, 8);
+  const auto deep = estimate_camera(walk(truth, 1, -2), 640, 480, kBodyHeight);
+  const auto flat = estimate_camera(walk(truth, 0, 0), 640, 480, kBodyHeight);
+  EXPECT_GT(flat->height_m.deviation, 3 * deep->height_m.deviation);
+  EXPECT_GT(flat->height_m.deviation, 0.2);
+  expect_inside(flat->height_m, 1.2, 2);
+  expect_inside(flat->tilt, to_radians(8), 2);
+  expect_inside(flat->focal_px, 900, 2);
+}
+
+TEST(EstimateCamera, TiltAtThePicturesSidesTellsTheFocalLength) {
+  const double guess = default_camera(640, 480).fx;
+  const auto wide = estimate_camera(walk(camera_at(500, 2.2, 20), 1, -2), 640, 480, kBodyHeight);
+  const auto level = estimate_camera(walk(camera_at(500, 1.2, 0), 1, -2), 640, 480, kBodyHeight);
+  EXPECT_LT(wide->focal_px.mean, 0.8 * guess);
+  EXPECT_GT(level->focal_px.deviation, 0.3 * level->focal_px.mean);
+}
+
+TEST(EstimateCamera, CrouchingForAWhileDoesNotRuinIt) {
+  const PinholeCamera truth = camera_at(700, 1.4, 5);
+  auto extents = walk(truth, 1, -2);
+  for (size_t i = 30; i < 50; ++i) extents[i].head.y() += 0.4 * extents[i].height();
+  const auto estimate = estimate_camera(extents, 640, 480, kBodyHeight);
+  EXPECT_NEAR(estimate->height_m.mean, 1.4, 0.1);
+  EXPECT_NEAR(to_degrees(estimate->tilt.mean), 5, 2.5);
+}
+
+TEST(EstimateCamera, NeedsSomeFrames) {
+  auto extents = walk(camera_at(700, 1.4, 5), 1, -2);
+  extents.resize(kFewestExtents - 1);
+  EXPECT_FALSE(estimate_camera(extents, 640, 480, kBodyHeight));
+  EXPECT_THROW((void)estimate_camera(extents, 640, 480, 0), std::invalid_argument);
+}
+
+// A head, a trunk and two legs.
+Mask figure() {
+  Mask mask(100, 120);
+  const auto fill = [&](int x0, int x1, int y0, int y1) {
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) mask.set(x, y);
+    }
+  };
+  fill(46, 54, 10, 24);
+  fill(40, 60, 24, 64);
+  fill(36, 46, 64, 110);
+  fill(54, 64, 64, 110);
+  return mask;
+}
+
+TEST(PersonExtent, HeadAndFeet) {
+  const auto extent = person_extent(figure());
+  ASSERT_TRUE(extent);
+  EXPECT_NEAR(extent->head.x(), 50, 0.01);
+  EXPECT_EQ(extent->head.y(), 10);
+  EXPECT_NEAR(extent->feet.x(), 50, 0.01);
+  EXPECT_EQ(extent->feet.y(), 110);
+}
+
+TEST(PersonExtent, ARaisedArmIsNoHead) {
+  Mask mask = figure();
+  for (int y = 2; y < 30; ++y) {
+    for (int x = 64; x < 69; ++x) mask.set(x, y);
+  }
+  for (int x = 60; x < 66; ++x) mask.set(x, 28);
+  const auto extent = person_extent(mask);
+  ASSERT_TRUE(extent);
+  EXPECT_NEAR(extent->head.y(), 10, 1);
+  EXPECT_NEAR(extent->head.x(), 50, 2);
+}
+
+TEST(PersonExtent, NothingOfWhoIsCutOrLies) {
+  EXPECT_FALSE(person_extent(Mask(100, 120)));
+  Mask cut = figure();
+  cut.set(62, 119);
+  EXPECT_FALSE(person_extent(cut));
+  Mask lying(200, 60);
+  for (int y = 20; y < 50; ++y) {
+    for (int x = 10; x < 190; ++x) lying.set(x, y);
+  }
+  EXPECT_FALSE(person_extent(lying));
+}
+
+}  // namespace
+}  // namespace silpose
