@@ -38,7 +38,7 @@ Result<Extents> read_extents(const InputOptions& input, Console& console) {
     if (!instant) return instant.failure();
     if (!instant->has_value()) break;
     const Observation& seen = (*instant)->observations[0];
-    if (seen.trust.nothing_found || seen.trust.area_jumped) continue;
+    if (seen.trust.nothing_found) continue;
     if (std::optional<PersonExtent> extent = person_extent(seen.mask)) {
       extent->time_s = static_cast<double>((*instant)->frame.time_ns) * 1e-9;
       extents.whole.push_back(*extent);

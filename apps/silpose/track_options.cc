@@ -159,7 +159,7 @@ TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<cons
   tracker.body = std::move(body);
   tracker.cameras = std::move(cameras);
   tracker.seed = seed;
-  // How high an assumed camera stands is a guess.
+  // Without a file the floor is a guess: where the camera was estimated, poses pressed on it came out worse, too.
   if (!tracker.floor && !options.camera.has_file()) tracker.floor = false;
   tracker.root_fixed = options.root == "fixed";
   tracker.resample_below = options.resample_below.value_or(tracker.resample_below);
