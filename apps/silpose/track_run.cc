@@ -219,12 +219,13 @@ class TrackRun {
   // Of tracking the clip as a whole; what saving comes to is in `saved_`.
   ClipResume clip_resume() {
     return {.state = now_.tracker, .keep = [this](const std::function<std::string()>& state) {
+              now_.seconds.smooth += smoothing_.restart();
               if (saved_ && should_save()) saved_ = save(state());
             }};
   }
 
   Result<void> track_instants() {
-    const Stopwatch smoothing;
+    smoothing_.restart();
     const auto progress = [&](size_t done, size_t total) {
       return saved_ && console_.update("tracking", static_cast<int64_t>(done), static_cast<int64_t>(total));
     };
@@ -236,13 +237,13 @@ class TrackRun {
       told_s += of_step.start + of_step.propagate + of_step.likelihood + of_step.resample;
       if (Result<void> recorded = record(std::move(report)); !recorded) return recorded;
     }
-    now_.seconds.smooth += smoothing.seconds() - told_s;
+    now_.seconds.smooth += smoothing_.restart() - told_s;
     return Console::interrupted() && reports.empty() ? Result<void>() : save({});
   }
 
   // From here on the body is the subject's, as far as the clip tells it.
   Result<void> fit_body_to_clip() {
-    const Stopwatch fitting;
+    smoothing_.restart();
     if (now_.given_poses.empty()) {
       std::vector<std::vector<double>> poses = poses_as_given(tracker_options_, clip_, console_, clip_resume());
       if (!saved_ || Console::interrupted()) return saved_;
@@ -251,7 +252,7 @@ class TrackRun {
     }
     std::optional<BodyFit> fit = fit_subject(tracker_options_, clip_, now_.given_poses, console_);
     if (Console::interrupted()) return {};
-    now_.seconds.smooth += fitting.seconds();
+    now_.seconds.smooth += smoothing_.restart();
     if (!fit) {
       tracked_.warnings.push_back("the body is as given: " + why_not_fitted(tracker_options_.cameras.size()));
       return {};
@@ -295,7 +296,7 @@ class TrackRun {
   std::vector<ClipInstant> clip_;  // tracked as a whole
   bool is_resumed_ = false;
   Result<void> saved_;
-  Stopwatch wall_, since_save_;
+  Stopwatch wall_, since_save_, smoothing_;
   double earlier_loop_s_ = 0, save_interval_s_ = kLeastInterval_s;
 };
 
