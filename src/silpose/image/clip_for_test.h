@@ -26,6 +26,7 @@ struct ClipForTest {
   std::vector<int64_t> times_ms;                            // of the frames; empty: even
   AVRational pixel_aspect = {1, 1};
   AVColorSpace colour_space = AVCOL_SPC_UNSPECIFIED;
+  AVColorTransferCharacteristic transfer = AVCOL_TRC_UNSPECIFIED;
   bool is_interlaced = false, has_sound = false, has_pictures = true;
   std::optional<std::array<int32_t, 9>> display_matrix;
 };
@@ -70,6 +71,7 @@ inline void write_clip_for_test(const std::filesystem::path& path, std::span<con
       encoder.framerate = {clip.rate, 1};
       encoder.sample_aspect_ratio = clip.pixel_aspect;
       encoder.colorspace = clip.colour_space;
+      encoder.color_trc = clip.transfer;
       encoder.color_range = AVCOL_RANGE_MPEG;
       if (clip.is_interlaced) encoder.flags |= AV_CODEC_FLAG_INTERLACED_DCT | AV_CODEC_FLAG_INTERLACED_ME;
     });

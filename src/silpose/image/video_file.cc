@@ -203,8 +203,9 @@ class VideoFile : public FrameSource {
     if (pixel_aspect_ != 1) {
       warnings_.push_back(fmt::format("{}: pixels {:.3f} times as wide as high, made square", name_, pixel_aspect_));
     }
-    if (frame.color_trc == AVCOL_TRC_SMPTE2084) {
-      warnings_.push_back(fmt::format("{}: HDR (PQ); taken as it is, it looks flat and dark", name_));
+    if (const std::optional<HdrTransfer> hdr = hdr_transfer_of(frame)) {
+      warnings_.push_back(fmt::format("{}: HDR ({}), taken as a screen of standard range shows it", name_,
+                                      *hdr == HdrTransfer::kHlg ? "HLG" : "PQ"));
     }
   }
 
