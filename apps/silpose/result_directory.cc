@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "apps/silpose/track_checkpoint.h"
 #include "apps/silpose/track_writer.h"
@@ -34,10 +35,13 @@ bool is_mask_folder(const fs::path& folder) {
   return !failed;
 }
 
+// What a track is gone on from.
+bool is_for_resuming(const std::string& name) { return name == kCheckpointFile || name.starts_with(kConfidenceFolder); }
+
 bool is_own(const fs::directory_entry& entry) {
   std::string name = entry.path().filename().string();
   if (entry.is_directory()) {
-    const bool is_known = name == "masks" || name.starts_with("masks_") || name.starts_with(kConfidenceFolder);
+    const bool is_known = name == "masks" || name.starts_with("masks_") || is_for_resuming(name);
     return is_known && is_mask_folder(entry.path());
   }
   if (name.ends_with(".tmp")) name.resize(name.size() - 4);  // of a program that was killed (base/text_file.h)
@@ -96,6 +100,11 @@ Result<ResultDirectory> ResultDirectory::create(const fs::path& directory, bool 
 
 Result<void> ResultDirectory::commit() {
   std::error_code failed;
+  std::vector<fs::path> passing;
+  for (const fs::directory_entry& entry : fs::directory_iterator(partial_, failed)) {
+    if (is_for_resuming(entry.path().filename().string())) passing.push_back(entry.path());
+  }
+  for (const fs::path& path : passing) fs::remove_all(path, failed);
   fs::path earlier;
   if (fs::exists(final_)) {
     earlier = final_;

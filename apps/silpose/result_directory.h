@@ -24,7 +24,7 @@ class ResultDirectory {
   // Where it will be.
   [[nodiscard]] const std::filesystem::path& final_path() const { return final_; }
 
-  // Renames to DIR.
+  // Renames to DIR, without what only --resume needs.
   Result<void> commit();
   // Leaves DIR.partial as it is. Without either, the destructor removes it: the work failed.
   void keep() { partial_.clear(); }

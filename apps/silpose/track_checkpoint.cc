@@ -75,11 +75,6 @@ Result<void> write_checkpoint(const std::filesystem::path& folder, const OptionL
   return write_checked_file(folder / kCheckpointFile, kCheckpoint, to_bytes(made_with, to_bytes(checkpoint)));
 }
 
-void remove_checkpoint(const std::filesystem::path& folder) {
-  std::error_code ignored;
-  std::filesystem::remove(folder / kCheckpointFile, ignored);
-}
-
 Result<std::optional<TrackCheckpoint>> read_checkpoint(const std::filesystem::path& folder,
                                                        const OptionLines& made_with) {
   const std::filesystem::path path = folder / kCheckpointFile;

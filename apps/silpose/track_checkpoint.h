@@ -65,8 +65,6 @@ uint32_t picture_checksum(const Frame& frame);
 Result<void> write_checkpoint(const std::filesystem::path& folder, const OptionLines& made_with,
                               const TrackCheckpoint& checkpoint);
 
-void remove_checkpoint(const std::filesystem::path& folder);
-
 // Nothing where the folder has none. Errors: damaged; made with something else, which is named.
 Result<std::optional<TrackCheckpoint>> read_checkpoint(const std::filesystem::path& folder,
                                                        const OptionLines& made_with);

@@ -43,7 +43,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   if (options.resume) {
     auto earlier = read_checkpoint(resume.folder, resume.made_with);
     if (!earlier) return earlier.failure();
-    if (!*earlier) console.message(fmt::format("{}: nothing to go on from", resume.folder.string()));
+    if (!*earlier && !options.each) console.message(fmt::format("{}: nothing to go on from", resume.folder.string()));
     resume.earlier = std::move(*earlier);
   }
   Result<ObservationSource> source = ObservationSource::open(options.input, console);
@@ -71,10 +71,6 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   if (is_recorded) {
     const Result<void> written = write_track_report(told, directory->path());
     if (!written) return written.failure();
-  }
-  if (!tracked->interrupted) {
-    remove_checkpoint(directory->path());
-    writer.remove_confidence();
   }
   Outcome outcome = track_outcome(told, tracked->interrupted ? directory->path() : directory->final_path());
   return deliver(*directory, app, chosen_options(options, tracked->used), std::move(outcome), console);

@@ -52,13 +52,6 @@ Result<void> TrackWriter::add_masks(const Frame& frame, std::span<const Observat
   return {};
 }
 
-void TrackWriter::remove_confidence() {
-  for (size_t c = 0; c < cameras_.size(); ++c) {
-    std::error_code ignored;
-    std::filesystem::remove_all(file_of(kConfidenceFolder, c, 0).parent_path(), ignored);
-  }
-}
-
 Result<std::vector<Observation>> TrackWriter::read_masks(int64_t frame_idx, std::span<const BesideMask> beside) const {
   std::vector<Observation> observations(cameras_.size());
   for (size_t c = 0; c < cameras_.size(); ++c) {

@@ -44,9 +44,8 @@ class TrackWriter {
   // observation a camera.
   Result<void> add_masks(const Frame& frame, std::span<const Observation> observations);
 
-  // From now on add_masks() keeps the confidence of the masks, too, for read_masks(), until remove_confidence().
+  // From now on add_masks() keeps the confidence of the masks, too, for read_masks().
   void keep_confidence() { keeps_confidence_ = true; }
-  void remove_confidence();
   // What add_masks() wrote of a frame, also of an earlier program. Shapes: the rest of each camera's observation.
   // Errors: a picture that cannot be read or has another size.
   Result<std::vector<Observation>> read_masks(int64_t frame_idx, std::span<const BesideMask> beside) const;

@@ -42,6 +42,19 @@ stop INT twice masks/000020.png "${online[@]}" --resume
 grep -q -E 'twice.partial: [0-9]+ frames are done; going on from frame [0-9]+' err.txt || fail "does not say where it goes on: $(cat err.txt)"
 same whole twice "${tables[@]}" camera.toml config.toml masks/000006.png masks/000029.png overlay.mp4
 
+# One of many clips.
+"$silpose" track --each "${online[@]}" --out all --quiet >/dev/null 2>err.txt &
+process=$!
+for ((wait = 0; wait < 1000; ++wait)); do
+  [[ -e all/video.partial/masks/000012.png ]] && break
+  sleep 0.02
+done
+kill -INT $process
+wait $process && fail "--each: was not stopped"
+"$silpose" track --each "${online[@]}" --resume --out all >/dev/null 2>err.txt || fail "--each --resume: exit $?"
+grep -q 'all/video.partial: .* frames are done' err.txt || fail "--each does not go on within a clip: $(cat err.txt)"
+same whole all/video "${tables[@]}"
+
 # A clip that is tracked as a whole, killed in its passes; the body fitted to it, stopped.
 whole=(truth/video.mp4 --segmenter background "${small[@]}" --preset accurate)
 "$silpose" track "${whole[@]}" --out smooth --quiet

@@ -2,7 +2,7 @@
 // standard range shows them: 8-bit sRGB. A diffuse white of 203 cd/m2 is the standard white; up to about half of that
 // colours are as they were, above they roll off towards 1,000 cd/m2, which comes out as white. Colours keep their hue;
 // what the smaller gamut lacks is cut.
-// Source: the systems and their curves (references.bib: bt2100), the roll-off (references.bib: bt2390, section 5.4),
+// Source: the systems and their curves (references.bib: bt2100), the roll-off (sect. 5.4 of references.bib: bt2390),
 // diffuse white (references.bib: bt2408), from wide primaries (references.bib: bt2407), the screen's curve
 // (references.bib: srgb).
 // Threads: constant after construction.
