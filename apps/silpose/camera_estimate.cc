@@ -22,7 +22,7 @@ int64_t num_samples(const ObservationSource& source) {
 }
 
 struct Extents {
-  std::vector<PersonExtent> whole;  // of subjects who are whole and upright
+  std::vector<PersonExtent> whole;  // of frames that show the whole subject
   int64_t num_frames = 0;           // looked at
 };
 
@@ -76,10 +76,10 @@ Result<void> estimate_camera_of(const InputOptions& input, double body_height_m,
   choice.estimate = estimate_camera(extents->whole, assumed.width, assumed.height, body_height_m);
   choice.estimating_s = stopwatch.seconds();
   if (!choice.estimate) {
-    choice.warnings.push_back(fmt::format(
-        "the camera was not estimated: the subject is whole and upright in {} of {} frames looked at, {} are "
-        "the least",
-        extents->whole.size(), extents->num_frames, kFewestExtents));
+    choice.warnings.push_back(
+        fmt::format("the camera was not estimated: too few of {} frames looked at show the subject whole and upright "
+                    "(whole: {})",
+                    extents->num_frames, extents->whole.size()));
     return {};
   }
   choice.cameras = {choice.estimate->camera};

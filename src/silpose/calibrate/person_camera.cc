@@ -33,6 +33,8 @@ const Unknowns kPriorDeviation = (Unknowns() << 0.35, 0.18, 0.02, 0.4, 0.12, 0.0
 // and as many windows count in full: of a longer clip they resemble each other.
 constexpr double kStride_s = 1;
 const Residual kNoise(0.02, 0.015, 0.02, 0.01);
+constexpr double kUpright = 0.88;       // of the most slender tenth: less crouches; who turns loses up to a tenth
+constexpr double kUprightShare = 0.75;  // of a window's frames
 constexpr double kTails = 4;
 constexpr double kMostWindows = 16;
 constexpr int kMostSteps = 60;
@@ -178,24 +180,36 @@ class PersonFit {
   double cost_ = 0;
 };
 
-// Medians over strides, half a stride apart. REQUIRES: times that do not fall.
-std::vector<PersonExtent> over_strides(std::span<const PersonExtent> extents) {
+// How slender a person is who stands upright. REQUIRES: some extents.
+double least_slenderness(std::span<const PersonExtent> extents) {
+  std::vector<double> all;
+  for (const PersonExtent& seen : extents) all.push_back(seen.slenderness);
+  const auto tenth = all.begin() + std::ssize(all) * 9 / 10;
+  std::nth_element(all.begin(), tenth, all.end());
+  return kUpright * *tenth;
+}
+
+// Medians over strides in which the person is upright, half a stride apart. REQUIRES: times that do not fall.
+std::vector<PersonExtent> over_strides(std::span<const PersonExtent> extents, double upright) {
   std::vector<PersonExtent> windows;
   const double end = extents.back().time_s;
   for (double start = extents.front().time_s; windows.empty() || start + 0.75 * kStride_s <= end;
        start += 0.5 * kStride_s) {
     std::array<std::vector<double>, 4> values;
+    int num_seen = 0;
     for (const PersonExtent& seen : extents) {
       if (seen.time_s < start || seen.time_s > start + kStride_s) continue;
+      ++num_seen;
+      if (seen.slenderness < upright) continue;
       values[0].push_back(seen.head.x());
       values[1].push_back(seen.head.y());
       values[2].push_back(seen.feet.x());
       values[3].push_back(seen.feet.y());
     }
-    if (values[0].empty()) continue;
+    if (values[0].empty() || static_cast<double>(values[0].size()) < kUprightShare * num_seen) continue;
     std::array<double, 4> middle{};
     for (size_t i = 0; i < 4; ++i) middle[i] = upper_median(std::move(values[i]));
-    windows.push_back({start + 0.5 * kStride_s, {middle[0], middle[1]}, {middle[2], middle[3]}});
+    windows.push_back({start + 0.5 * kStride_s, {middle[0], middle[1]}, {middle[2], middle[3]}, upright});
   }
   return windows;
 }
@@ -240,7 +254,9 @@ std::optional<PersonExtent> person_extent(const Mask& mask) {
     }
   }
   const double head_x = middle_of_rows(mask, top, top + head_rows - 1, begin, end).value();
-  return PersonExtent{0, {head_x, top}, {0.5 * (left + right), bottom}};
+  PersonExtent extent{0, {head_x, top}, {0.5 * (left + right), bottom}};
+  extent.slenderness = extent.height() / std::sqrt(static_cast<double>(mask.count()));
+  return extent;
 }
 
 std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> extents, int width, int height,
@@ -248,9 +264,13 @@ std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> exte
   check(width > 0 && height > 0 && body_height_m > 0, "estimate_camera: picture {}x{}, body {} m", width, height,
         body_height_m);
   if (extents.size() < kFewestExtents) return std::nullopt;
+  const double upright = least_slenderness(extents);
+  const auto num_upright = static_cast<size_t>(
+      std::ranges::count_if(extents, [&](const PersonExtent& seen) { return seen.slenderness >= upright; }));
+  const std::vector<PersonExtent> windows = over_strides(extents, upright);
+  if (num_upright < kFewestExtents || windows.empty()) return std::nullopt;
   const PinholeCamera guess = default_camera(width, height);
   const View view{guess.fx, guess.cx, guess.cy, body_height_m};
-  const std::vector<PersonExtent> windows = over_strides(extents);
   std::optional<PersonFit> best;
   for (const double tilt : {-0.2, 0.0, 0.2, 0.5}) {
     for (const double camera_height : {0.7, 1.5, 2.6}) {
@@ -276,7 +296,7 @@ std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> exte
   estimate.roll = {at[kRoll], deviation(kRoll)};
   estimate.height_m = {above, above * deviation(kLogHeight)};
   estimate.body_height_m = body_height_m;
-  estimate.num_frames = extents.size();
+  estimate.num_frames = num_upright;
   std::vector<double> distances;
   for (const Place& place : best->places()) distances.push_back(std::exp(place[1]));
   const Eigen::Vector3d eye(0, above, upper_median(std::move(distances)));

@@ -19,8 +19,9 @@ namespace silpose {
 // Where a mask has its upper and its lower end, pixels (the centre of the top-left pixel at 0.5).
 struct PersonExtent {
   double time_s = 0;
-  Eigen::Vector2d head;  // middle of what is topmost above the trunk; its uppermost edge
-  Eigen::Vector2d feet;  // middle of the legs' lowest part; its lowest edge
+  Eigen::Vector2d head;    // middle of what is topmost above the trunk; its uppermost edge
+  Eigen::Vector2d feet;    // middle of the legs' lowest part; its lowest edge
+  double slenderness = 0;  // height over the square root of the mask's area: less of who crouches or sits
   [[nodiscard]] double height() const { return feet.y() - head.y(); }
 };
 
@@ -41,8 +42,9 @@ struct CameraEstimate {
 
 inline constexpr size_t kFewestExtents = 8;
 
-// `body_height_m` is taken as known: the camera's height grows in proportion to it. Nothing with fewer extents than
-// kFewestExtents. Errors: throws std::invalid_argument for sizes that are not positive.
+// `body_height_m` is taken as known: the camera's height grows in proportion to it. Frames in which
+// the person crouches are left out. Nothing where fewer than kFewestExtents are left, or they are scattered. Errors:
+// throws std::invalid_argument for sizes that are not positive.
 [[nodiscard]] std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> extents, int width,
                                                             int height, double body_height_m);
 

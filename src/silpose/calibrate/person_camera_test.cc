@@ -20,7 +20,7 @@ PinholeCamera camera_at(double focal_px, double height, double tilt_deg) {
 
 // A straight, thin person whose nearest foot is 0.22 m before its axis and who stoops by 2 %, twelve times a second.
 PersonExtent extent_at(const PinholeCamera& camera, double x, double z, double time_s) {
-  PersonExtent extent{time_s, camera.project({x, 0.98 * kBodyHeight, z}).value(), {}};
+  PersonExtent extent{time_s, camera.project({x, 0.98 * kBodyHeight, z}).value(), {}, 2.5};
   const Eigen::Vector2d axis = camera.project({x, 0, z}).value(), toe = camera.project({x, 0, z + 0.22}).value();
   extent.feet = {axis.x(), toe.y()};
   return extent;
@@ -91,7 +91,10 @@ TEST(EstimateCamera, TiltAtThePicturesSidesTellsTheFocalLength) {
 TEST(EstimateCamera, CrouchingForAWhileDoesNotRuinIt) {
   const PinholeCamera truth = camera_at(700, 1.4, 5);
   auto extents = walk(truth, 1, -2);
-  for (size_t i = 30; i < 50; ++i) extents[i].head.y() += 0.4 * extents[i].height();
+  for (size_t i = 30; i < 50; ++i) {
+    extents[i].head.y() += 0.4 * extents[i].height();
+    extents[i].slenderness = 2;
+  }
   const auto estimate = estimate_camera(extents, 640, 480, kBodyHeight);
   EXPECT_NEAR(estimate->height_m.mean, 1.4, 0.1);
   EXPECT_NEAR(to_degrees(estimate->tilt.mean), 5, 2.5);
@@ -126,6 +129,7 @@ TEST(PersonExtent, HeadAndFeet) {
   EXPECT_EQ(extent->head.y(), 10);
   EXPECT_NEAR(extent->feet.x(), 50, 0.01);
   EXPECT_EQ(extent->feet.y(), 110);
+  EXPECT_NEAR(extent->slenderness, 100 / std::sqrt(14 * 8 + 40 * 20 + 2 * 46 * 10), 1e-9);
 }
 
 TEST(PersonExtent, ARaisedArmIsNoHead) {
