@@ -6,28 +6,13 @@
 // Student's t, since people stoop, jump and raise their arms. Threads: functions without state.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <span>
-#include <vector>
 
+#include "silpose/calibrate/person_extent.h"
 #include "silpose/geometry/camera.h"
-#include "silpose/image/mask.h"
 
 namespace silpose {
-
-// Where a mask has its upper and its lower end, pixels (the centre of the top-left pixel at 0.5).
-struct PersonExtent {
-  double time_s = 0;
-  Eigen::Vector2d head;    // middle of what is topmost above the trunk; its uppermost edge
-  Eigen::Vector2d feet;    // middle of the legs' lowest part; its lowest edge
-  double slenderness = 0;  // height over the square root of the mask's area: less of who crouches or sits
-  [[nodiscard]] double height() const { return feet.y() - head.y(); }
-};
-
-// Its time is left to the caller. Nothing where the mask is empty, is cut by the picture's edge, is under 24 pixels
-// high, or lies rather than stands.
-[[nodiscard]] std::optional<PersonExtent> person_extent(const Mask& mask);
 
 struct Estimated {
   double mean = 0, deviation = 0;
