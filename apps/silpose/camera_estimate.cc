@@ -26,15 +26,13 @@ struct Extents {
   int64_t num_frames = 0;           // looked at
 };
 
-Result<Extents> read_extents(const InputOptions& input, Console& console) {
-  Result<ObservationSource> source = ObservationSource::open(input, console);
-  if (!source) return source.failure();
-  const int64_t expected = source->num_expected(), samples = num_samples(*source);
-  source->thin_out_to(samples);
+Result<Extents> read_extents(ObservationSource& source, Console& console) {
+  const int64_t expected = source.num_expected(), samples = num_samples(source);
+  source.thin_out_to(samples);
   Extents extents;
   for (;; ++extents.num_frames) {
     if (!console.update("estimating the camera", extents.num_frames, std::min(expected, samples))) break;
-    const Result<std::optional<Instant>> instant = source->next();
+    const Result<std::optional<Instant>> instant = source.next();
     if (!instant) return instant.failure();
     if (!instant->has_value()) break;
     const Observation& seen = (*instant)->observations[0];
@@ -55,10 +53,8 @@ std::string warning_of(const CameraEstimate& estimate) {
   const double tilt = to_degrees(estimate.tilt.mean);
   return fmt::format(
       "no camera file: estimated from the subject in {} frames: focal length {:.0f} ± {:.0f} px, {:.2f} ± {:.2f} m "
-      "above "
-      "the floor, tilted {:.0f} ± {:.0f} degrees {}, for a subject {:.2f} m tall; lengths and angles are only as good "
-      "as "
-      "that",
+      "above the floor, tilted {:.0f} ± {:.0f} degrees {}, for a subject {:.2f} m tall; lengths and angles are only as "
+      "good as that",
       estimate.num_frames, estimate.focal_px.mean, estimate.focal_px.deviation, estimate.height_m.mean,
       estimate.height_m.deviation, std::abs(tilt), to_degrees(estimate.tilt.deviation), tilt < 0 ? "up" : "down",
       estimate.body_height_m);
@@ -66,12 +62,13 @@ std::string warning_of(const CameraEstimate& estimate) {
 
 }  // namespace
 
-Result<void> estimate_camera_of(const InputOptions& input, double body_height_m, CameraChoice& choice,
+Result<void> estimate_camera_of(ObservationSource& source, double body_height_m, CameraChoice& choice,
                                 Console& console) {
   const Stopwatch stopwatch;
-  const Result<Extents> extents = read_extents(input, console);
+  const Result<Extents> extents = read_extents(source, console);
   if (!extents) return extents.failure();
   if (Console::interrupted()) return error("interrupted before the first frame");
+  if (const Result<void> rewound = source.rewind(console); !rewound) return rewound;
   const PinholeCamera& assumed = choice.cameras[0];
   choice.estimate = estimate_camera(extents->whole, assumed.width, assumed.height, body_height_m);
   choice.estimating_s = stopwatch.seconds();

@@ -11,10 +11,10 @@
 
 namespace silpose::app {
 
-// Masks some frames of the clip, and puts the estimated camera, with a warning that says how well it is known, in place
-// of the assumed one; where the clip shows too little of the person, the assumed one stays, and its warning says why.
-// Errors: those of ObservationSource; interrupted.
-Result<void> estimate_camera_of(const InputOptions& input, double body_height_m, CameraChoice& choice,
+// Masks some frames of the clip, which is rewound then, and puts the estimated camera, with a warning that says how
+// well it is known, in place of the assumed one; where the clip shows too little of the person, the assumed one stays,
+// and its warning says why. Errors: those of ObservationSource; interrupted.
+Result<void> estimate_camera_of(ObservationSource& source, double body_height_m, CameraChoice& choice,
                                 Console& console);
 
 // {"focal_px": {mean, std}, "height_m": ..., "tilt_deg": ..., "roll_deg": ..., "frames": N, "body_height_m": H}

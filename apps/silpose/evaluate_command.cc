@@ -66,8 +66,7 @@ Command add_evaluate(CLI::App& program, const CommonOptions&) {
   app->add_option("--truth", options->truth, "Directory of a truth")->required();
   app->add_option("--start", options->evaluation.start_s, "Seconds: only what is not before")->check(within(-1e6, 1e6));
   app->add_option("--end", options->evaluation.end_s, "Seconds: only what is before")->check(within(-1e6, 1e6));
-  app->add_option("--model", options->model, "The body of the result; default: its own")
-      ->check(is_model());
+  app->add_option("--model", options->model, "The body of the result; default: its own")->check(is_model());
   return {app, [options](Console& console) { return run_evaluate(*options, console); }};
 }
 

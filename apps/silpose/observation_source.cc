@@ -190,7 +190,25 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
     source.segmenters_.push_back(std::move(*made));
   }
   source.learning_s_ = learning.seconds();
+  source.first_state_ = source.state();
   return source;
+}
+
+Result<void> ObservationSource::rewind(Console& console) {
+  if (std::ranges::all_of(segmenters_, [](const auto& segmenter) { return segmenter->can_go_back(); })) {
+    Result<Video> video = open_video(options_.videos, options_.video_options());
+    if (!video) return video.failure();
+    *video_ = std::move(*video);
+    restore(first_state_);
+    stride_ = 1;
+    num_wanted_ = 0;
+    return {};
+  }
+  Result<ObservationSource> fresh = open(options_, console);
+  if (!fresh) return fresh.failure();
+  fresh->learning_s_ += learning_s_;
+  *this = std::move(*fresh);
+  return {};
 }
 
 Result<std::optional<Instant>> ObservationSource::next() { return read(true); }

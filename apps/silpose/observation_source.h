@@ -57,6 +57,9 @@ class ObservationSource {
   // The same, without masks: only segmenters that must see every picture are shown it.
   Result<std::optional<Frame>> skip();
 
+  // Back to the first instant, as if none had been given; what was learned is not learned again. Errors: as open().
+  Result<void> rewind(Console& console);
+
   // What next() carries on. Another source of the same options that skipped as many goes on from it as this one would.
   // Errors: restore() throws std::invalid_argument for what is no such state.
   [[nodiscard]] std::string state() const;
@@ -79,6 +82,7 @@ class ObservationSource {
   std::unique_ptr<Video> video_;
   std::vector<std::unique_ptr<Segmenter>> segmenters_;
   std::vector<std::string> warnings_;
+  std::string first_state_;
   int64_t stride_ = 1, num_wanted_ = 0;
   int64_t num_seen_ = 0, num_cut_ = 0;  // masks with a subject, and of these at the edge of the picture
   double learning_s_ = 0;

@@ -31,8 +31,10 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   if (!pose) return pose.failure();
   Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
   if (!cameras) return cameras.failure();
+  Result<ObservationSource> source = ObservationSource::open(options.input, console);
+  if (!source) return source.failure();
   if (estimates_camera(options)) {
-    const Result<void> estimated = estimate_camera_of(options.input, (*body)->height_m, *cameras, console);
+    const Result<void> estimated = estimate_camera_of(*source, (*body)->height_m, *cameras, console);
     if (!estimated) return estimated.failure();
   }
   TrackerOptions tracker = tracker_options(options, *body, cameras->cameras, common.seed);
@@ -46,8 +48,6 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
     if (!*earlier && !options.each) console.message(fmt::format("{}: nothing to go on from", resume.folder.string()));
     resume.earlier = std::move(*earlier);
   }
-  Result<ObservationSource> source = ObservationSource::open(options.input, console);
-  if (!source) return source.failure();
   if (options.init == "landmarks" && !source->finds_landmarks()) {
     return error("--init landmarks: {} finds none; --segmenter learned does", source->background());
   }

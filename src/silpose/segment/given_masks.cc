@@ -69,6 +69,7 @@ class GivenMasks : public Segmenter {
       return judge(white_of(told(mask)));
     }
   }
+  [[nodiscard]] bool can_go_back() const override { return false; }  // masks are read in their order
   [[nodiscard]] std::string state() const override { return to_bytes(is_told_, warnings_, monitor_); }
   void restore(std::string_view state) override {
     check(from_bytes(state, is_told_, warnings_, monitor_), "GivenMasks: not a state of it");

@@ -49,6 +49,9 @@ class Segmenter {
   // Learns from every picture: also those that are not to be tracked must be shown to it.
   [[nodiscard]] virtual bool sees_all() const { return false; }
 
+  // Whether it can be shown earlier pictures again after restore().
+  [[nodiscard]] virtual bool can_go_back() const { return !sees_all(); }
+
   // What it carries from picture to picture besides that: another one, made alike, goes on from it as this one would.
   // Errors: restore() throws std::invalid_argument for what is no such state.
   [[nodiscard]] virtual std::string state() const { return {}; }
