@@ -211,6 +211,12 @@ Result<void> ObservationSource::rewind(Console& console) {
   return {};
 }
 
+void ObservationSource::expect(std::vector<Mask> silhouettes) {
+  for (size_t camera = 0; camera < silhouettes.size(); ++camera) {
+    segmenters_[camera]->expect(std::move(silhouettes[camera]));
+  }
+}
+
 Result<std::optional<Instant>> ObservationSource::next() { return read(true); }
 
 Result<std::optional<Frame>> ObservationSource::skip() {

@@ -52,6 +52,9 @@ class ObservationSource {
   // From here on about `count` instants are given, evenly over the clip; the others are not segmented.
   void thin_out_to(int64_t count);
 
+  // Where the subject is expected in the next pictures: [C], or empty where nobody knows.
+  void expect(std::vector<Mask> silhouettes);
+
   // The next instant to be tracked, nothing at the end. Errors: those of the video and of the segmenter.
   Result<std::optional<Instant>> next();
   // The same, without masks: only segmenters that must see every picture are shown it.

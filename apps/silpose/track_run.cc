@@ -170,6 +170,7 @@ class TrackRun {
       tracker->restore(now_.tracker);
     }
     while (true) {
+      if (tracker) source_.expect(tracker->expected(1 / source_.video().fps()));
       Result<std::optional<Instant>> instant = next("tracking");
       if (!instant) return instant.failure();
       if (!instant->has_value()) break;

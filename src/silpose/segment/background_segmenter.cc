@@ -37,7 +37,7 @@ class BackgroundSegmenter : public Segmenter {
       depth = depth_evidence(*seen, options_.depth->background);
     }
     const Mask found = finder_.find(luma_chroma, depth ? &*depth : nullptr);
-    const Mask blob = choose_blob(found, blob_);
+    const Mask blob = choose_blob(found, blob_, std::exchange(expected_, {}));
     ByteImage confidence = finder_.confidence(found);
     doubt_changes(confidence, found, blob);
     const int grow_px = options_.clean_up.grow_px;
@@ -48,6 +48,7 @@ class BackgroundSegmenter : public Segmenter {
     forgive_edges(confidence, matte.mask);
     return monitor_.judge(grow(matte.mask, grow_px), std::move(confidence));
   }
+  void expect(Mask silhouette) override { expected_ = std::move(silhouette); }
   [[nodiscard]] int64_t first_index() const override { return options_.first_index; }
   [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
   void restore(std::string_view state) override {
@@ -62,6 +63,7 @@ class BackgroundSegmenter : public Segmenter {
   ForegroundFinder finder_;
   CleanUpOptions blob_;
   TrustMonitor monitor_;
+  Mask expected_;
 };
 
 class OnlineSegmenter : public Segmenter {
@@ -96,8 +98,9 @@ class OnlineSegmenter : public Segmenter {
       result.trust = 0;
       return result;
     }
-    return monitor_.judge(choose_blob(mask_from_image(bytes), options_.clean_up));
+    return monitor_.judge(choose_blob(mask_from_image(bytes), options_.clean_up, std::exchange(expected_, {})));
   }
+  void expect(Mask silhouette) override { expected_ = std::move(silhouette); }
   [[nodiscard]] bool sees_all() const override { return true; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
   [[nodiscard]] std::string name() const override { return options_.name; }
@@ -110,6 +113,7 @@ class OnlineSegmenter : public Segmenter {
   cv::Size size_;
   int num_seen_ = 0;
   TrustMonitor monitor_;
+  Mask expected_;
 };
 
 }  // namespace

@@ -38,8 +38,10 @@ class ChromaSegmenter : public Segmenter {
       return error("frame {}: {}x{}, its screen {}x{}", index, image.width(), image.height(), model_.width(),
                    model_.height());
     }
-    return monitor_.judge(choose_blob(find_before_screen(model_, to_luma_chroma(image)), clean_up_));
+    return monitor_.judge(
+        choose_blob(find_before_screen(model_, to_luma_chroma(image)), clean_up_, std::exchange(expected_, {})));
   }
+  void expect(Mask silhouette) override { expected_ = std::move(silhouette); }
   [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
   void restore(std::string_view state) override {
     check(from_bytes(state, monitor_), "ChromaSegmenter: not a state of it");
@@ -54,6 +56,7 @@ class ChromaSegmenter : public Segmenter {
   CleanUpOptions clean_up_;
   std::vector<std::string> warnings_;
   TrustMonitor monitor_;
+  Mask expected_;
 };
 
 }  // namespace

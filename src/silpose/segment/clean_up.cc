@@ -10,7 +10,8 @@
 namespace silpose {
 namespace {
 
-constexpr double kMinBlob = 0.0005;  // of the picture
+constexpr double kMinBlob = 0.0005;    // of the picture
+constexpr double kLeastCovered = 0.3;  // of an expected silhouette
 
 // Where a set pixel lies within `radius`.
 cv::Mat within(const cv::Mat& mat, int radius) {
@@ -90,8 +91,12 @@ Mask grow(const Mask& mask, int radius_px) {
   return mask_from_mat(result);
 }
 
-Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
+Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected) {
   options.check();
+  const bool is_expected = expected.count() > 0;
+  check(expected.width() == 0 || (expected.width() == foreground.width() && expected.height() == foreground.height()),
+        "choose_blob: a silhouette of {}x{} is expected, picture {}x{}", expected.width(), expected.height(),
+        foreground.width(), foreground.height());
   Mask cut = foreground;
   if (options.garbage_mask) {
     check(options.garbage_mask->width() == cut.width() && options.garbage_mask->height() == cut.height(),
@@ -123,7 +128,12 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
   }
   cv::Mat labels;
   const auto count = static_cast<size_t>(cv::connectedComponents(joined, labels, 8, CV_32S));
-  std::vector<int64_t> area(count, 0), inside(count, 0);
+  cv::Mat near;  // where the subject is expected
+  if (is_expected) {
+    const int margin = static_cast<int>(kExpectedMargin * expected.bounding_box().height);
+    near = within(mat_from_mask(expected), margin)(cv::Rect(x0, y0, x1 - x0, y1 - y0));
+  }
+  std::vector<int64_t> area(count, 0), inside(count, 0), expected_area(count, 0);
   for (int y = 0; y < mat.rows; ++y) {
     const int* row = labels.ptr<int>(y);
     const uint8_t* is_set = mat.ptr(y);
@@ -135,24 +145,35 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options) {
           !options.region || (x0 + x >= options.region->x && x0 + x < options.region->x + options.region->width &&
                               y0 + y >= options.region->y && y0 + y < options.region->y + options.region->height);
       if (in_region) ++inside[label];
+      if (is_expected && near.at<uint8_t>(y, x)) ++expected_area[label];
     }
   }
   const double min_area = options.min_blob_px >= 0 ? options.min_blob_px : kMinBlob * cut.width() * cut.height();
   size_t best = 0;
+  int64_t covered = 0;
+  std::vector<bool> is_kept(count, false);
   for (size_t label = 1; label < count; ++label) {
     if (static_cast<double>(area[label]) < min_area || 2 * inside[label] < area[label]) continue;
     if (best == 0 || area[label] > area[best]) best = label;
+    if (2 * expected_area[label] < area[label] || expected_area[label] == 0) continue;
+    is_kept[label] = true;
+    covered += area[label];
   }
   if (best == 0) return blob;
+  if (static_cast<double>(covered) < kLeastCovered * static_cast<double>(expected.count()) || covered == 0) {
+    is_kept.assign(count, false);
+    is_kept[best] = true;
+    covered = area[best];
+  }
   Mask part(mat.cols, mat.rows);
   for (int y = 0; y < mat.rows; ++y) {
     const int* row = labels.ptr<int>(y);
     const uint8_t* is_set = mat.ptr(y);
     for (int x = 0; x < mat.cols; ++x) {
-      if (is_set[x] && static_cast<size_t>(row[x]) == best) part.set(x, y);
+      if (is_set[x] && is_kept[static_cast<size_t>(row[x])]) part.set(x, y);
     }
   }
-  const auto max_hole = static_cast<int64_t>(options.max_hole * static_cast<double>(area[best]));
+  const auto max_hole = static_cast<int64_t>(options.max_hole * static_cast<double>(covered));
   part = grow(fill_holes(close_gaps(part, reach), max_hole), options.grow_px);
   for (int y = 0; y < mat.rows; ++y) {
     for (int x = 0; x < mat.cols; ++x) {

@@ -23,9 +23,12 @@ struct CleanUpOptions {
   void check() const;
 };
 
-// The largest blob that counts, whole; empty where none does. Errors: throws std::invalid_argument where the garbage
-// mask has another size.
-Mask choose_blob(const Mask& foreground, const CleanUpOptions& options);
+// The largest blob that counts, whole; empty where none does. Where a silhouette is expected it is instead all blobs
+// that count and lie within that, grown by kExpectedMargin of its height, for the most part: a subject who is cut in
+// two stays whole, and what is larger elsewhere is not taken for him. Unless what they cover of it is too little to
+// believe in it. Errors: throws std::invalid_argument where the garbage mask, or what is expected, has another size.
+inline constexpr double kExpectedMargin = 0.08;
+Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected = {});
 
 // Fills holes (4-connected, not touching the border) of at most max_area pixels.
 Mask fill_holes(const Mask& mask, int64_t max_area);

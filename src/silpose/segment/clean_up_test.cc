@@ -56,6 +56,38 @@ TEST(ChooseBlob, GarbageMaskCutsBeforeBlobsAreCounted) {
   EXPECT_THROW((void)cleaned(kTwoBlobs, options), std::invalid_argument);
 }
 
+// A subject of two parts, and something larger beside him.
+const char* const kCutInTwo =
+    "##......\n"
+    "##..####\n"
+    "....####\n"
+    "##..####\n"
+    "##..####\n";
+
+TEST(ChooseBlob, KeepsWhatIsExpectedTogetherAndNothingElse) {
+  CleanUpOptions options;
+  options.join_gap = 0;
+  const Mask parts = mask_from_text(kCutInTwo);
+  const Mask expected = mask_from_text("##......\n##......\n##......\n##......\n##......\n");
+  EXPECT_EQ(choose_blob(parts, options).count(), 16);
+  EXPECT_EQ(text_from_mask(choose_blob(parts, options, expected)), text_from_mask(mask_from_text("##......\n"
+                                                                                                 "##......\n"
+                                                                                                 "........\n"
+                                                                                                 "##......\n"
+                                                                                                 "##......\n")));
+  options.min_blob_px = 5;  // neither part counts
+  EXPECT_EQ(choose_blob(parts, options, expected).count(), 16);
+  EXPECT_THROW((void)choose_blob(parts, {}, Mask(3, 3)), std::invalid_argument);
+}
+
+TEST(ChooseBlob, DoesNotBelieveWhereTooLittleIsThere) {
+  const Mask parts = mask_from_text("#...####\n....####\n....####\n....####\n....####\n");
+  const Mask expected = mask_from_text("##......\n##......\n##......\n##......\n##......\n");
+  CleanUpOptions options;
+  options.join_gap = 0;
+  EXPECT_EQ(choose_blob(parts, options, expected).count(), 20);
+}
+
 TEST(ChooseBlob, DiagonalNeighboursAreOneBlob) { EXPECT_EQ(cleaned("#..\n.#.\n..#", {}).count(), 3); }
 
 TEST(ChooseBlob, SmallGapsAreClosedAndDoNotPartABlob) {

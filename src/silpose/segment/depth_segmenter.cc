@@ -38,9 +38,10 @@ class DepthSegmenter : public Segmenter {
     const Result<DepthImage> depth = depth_.image_of(index);
     if (!depth) return depth.failure();
     const Mask before = range_ ? within_depth_range(*depth, *range_) : nearer_than_background(*depth, background_);
-    return monitor_.judge(choose_blob(before, clean_up_));
+    return monitor_.judge(choose_blob(before, clean_up_, std::exchange(expected_, {})));
   }
   [[nodiscard]] int64_t first_index() const override { return depth_.first_number() + depth_.offset; }
+  void expect(Mask silhouette) override { expected_ = std::move(silhouette); }
   [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
   void restore(std::string_view state) override {
     check(from_bytes(state, monitor_), "DepthSegmenter: not a state of it");
@@ -57,6 +58,7 @@ class DepthSegmenter : public Segmenter {
   DepthImage background_;
   std::vector<std::string> warnings_;
   TrustMonitor monitor_;
+  Mask expected_;
 };
 
 }  // namespace

@@ -40,6 +40,10 @@ class Segmenter {
   // Errors: the picture has another size than those learned from; given masks that end, break or have another size.
   virtual Result<Segmentation> segment(const ByteImage& image, int64_t index) = 0;
 
+  // Where the subject is expected in the next picture, [H, W]; empty: nobody knows. It helps to choose among blobs
+  // (choose_blob()) and never becomes foreground by itself. A network needs no such help.
+  virtual void expect(Mask /*silhouette*/) {}
+
   // Whether its masks come with landmarks.
   [[nodiscard]] virtual bool finds_landmarks() const { return false; }
 

@@ -9,6 +9,7 @@
 #include "silpose/base/state_bytes.h"
 #include "silpose/filter/estimate.h"
 #include "silpose/motion/common_poses.h"
+#include "silpose/render/silhouette.h"
 #include "silpose/segment/background_segmenter.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/observe.h"
@@ -186,6 +187,22 @@ StepReport Tracker::step(const Frame& frame) {
   StepReport report = step(observations, frame.index, frame.time_ns);
   report.seconds.segment = segmenting;
   return report;
+}
+
+std::vector<Mask> Tracker::expected(double dt_s) const {
+  const Impl& t = *impl_;
+  if (!t.started || t.last_seen_ns != t.last_time_ns) return {};
+  std::vector<double> pose = t.last_pose;
+  const StateBatch& states = t.filter->particles().states;
+  if (t.options.num_hypotheses) {
+    const auto velocity = states.row(0).tail(std::ssize(pose));  // of the estimate, which is the best hypothesis
+    for (size_t d = 0; d < pose.size(); ++d) pose[d] += dt_s * velocity[static_cast<Eigen::Index>(d)];
+    t.options.body->skeleton.clamp(pose);
+  }
+  const BodyModel& body = t.likelihoods.coarse ? t.likelihoods.coarse->body() : t.likelihoods.renderers[0]->body();
+  std::vector<Mask> silhouettes;
+  for (const PinholeCamera& camera : t.options.cameras) silhouettes.push_back(render_silhouette(body, camera, pose));
+  return silhouettes;
 }
 
 const TrackerOptions& Tracker::options() const { return impl_->options; }

@@ -12,6 +12,7 @@
 
 #include "silpose/filter/state_batch.h"
 #include "silpose/image/frame.h"
+#include "silpose/image/mask.h"
 #include "silpose/shape/observation.h"
 #include "silpose/track/step_report.h"
 #include "silpose/track/tracker_options.h"
@@ -32,6 +33,10 @@ class Tracker {
   // The same from pictures: segmented with an online background model, one a camera, that the tracker keeps.
   // Errors: throws std::runtime_error where an image has another size than the first.
   StepReport step(const Frame& frame);
+
+  // Silhouettes of the estimate, moved on at its speed for another `dt_s`, on a coarse mesh: [C]. Empty before the
+  // start and while it coasts.
+  [[nodiscard]] std::vector<Mask> expected(double dt_s) const;
 
   [[nodiscard]] const TrackerOptions& options() const;  // with everything unset filled in
   // The current particles [N, D' >= D] and their log weights [N]. Those of fitted hypotheses are poses, then velocities

@@ -227,5 +227,22 @@ TEST(TrackerOptions, AreChecked) {
   EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.resampling = "best"; }), std::invalid_argument);
 }
 
+// Where it expects the body is nearer to where it is then than where it was.
+TEST_P(TrackerTest, ExpectsTheBodyWhereItGoes) {
+  Tracker tracker(options());
+  EXPECT_TRUE(tracker.expected(0.03).empty());
+  constexpr int64_t kFrame_ns = 33'333'333;
+  for (int t = 0; t < 8; ++t) {
+    const Observation seen = observe(t);
+    tracker.step({&seen, 1}, t, t * kFrame_ns);
+  }
+  const std::vector<Mask> expected = tracker.expected(1 / 30.0);
+  ASSERT_EQ(expected.size(), 1u);
+  EXPECT_GT(intersection_over_union(expected[0], observe(8).mask), 0.8);
+  const Observation none = nothing();
+  tracker.step({&none, 1}, 8, 8 * kFrame_ns);
+  EXPECT_TRUE(tracker.expected(0.03).empty());
+}
+
 }  // namespace
 }  // namespace silpose
