@@ -51,7 +51,13 @@ std::vector<std::pair<std::string, double>> StageSeconds::list() const {
 }
 
 OptionLines made_with(OptionLines options, const std::vector<PinholeCamera>& cameras, const BodyModel& body) {
-  for (auto& [key, value] : options) key = (key == "video" ? "VIDEO" : "--" + key);
+  for (auto& [key, value] : options) {
+    if (key == "video") {
+      key = "VIDEO";
+    } else {
+      key.insert(0, "--");
+    }
+  }
   std::string of_cameras;
   for (const PinholeCamera& camera : cameras) of_cameras += bytes_of(camera);
   options.emplace_back("the cameras (checksum)", fmt::format("{:08x}", checksum(of_cameras)));

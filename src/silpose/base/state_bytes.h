@@ -46,7 +46,7 @@ class StateWriter {
     } else if constexpr (HasMembers<T>) {
       put(T::members(value));
     } else if constexpr (Tuple<T>) {
-      std::apply([this](const auto&... members) { (put(members), ...); }, value);
+      std::apply([&](const auto&... members) { (put(members), ...); }, value);
     } else if constexpr (Matrix<T>) {
       put(int64_t{value.rows()});
       put(int64_t{value.cols()});
@@ -90,7 +90,7 @@ class StateReader {
     } else if constexpr (HasMembers<T>) {
       return get_all(T::members(value));
     } else if constexpr (Tuple<T>) {
-      return std::apply([this](auto&... members) { return (get(members) && ...); }, value);
+      return std::apply([&](auto&... members) { return (get(members) && ...); }, value);
     } else if constexpr (Matrix<T>) {
       int64_t rows = 0, cols = 0;
       if (!get(rows) || !get(cols) || rows < 0 || cols < 0) return false;
@@ -122,7 +122,7 @@ class StateReader {
   }
   template <class... T>
   bool get_all(std::tuple<T&...> values) {
-    return std::apply([this](auto&... each) { return (get(each) && ...); }, values);
+    return std::apply([&](auto&... each) { return (get(each) && ...); }, values);
   }
   [[nodiscard]] bool at_end() const { return bytes_.empty(); }
 

@@ -262,6 +262,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   // for no better than exact masks have them.
   CoverageLikelihood::Scratch scratch(likelihood);
   std::vector<Eigen::VectorXd> poses;
+  poses.reserve(starts.size());
   for (const Candidate& start : starts) poses.push_back(start.fit.pose);
   std::vector<double> noise = likelihood.least_noise(evidence, poses, scratch);
   for (double& of_camera : noise) of_camera = std::max(of_camera, CoverageLikelihood::kExactNoise);
