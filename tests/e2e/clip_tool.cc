@@ -1,5 +1,6 @@
 // Clips as phones and camcorders make them, for the end-to-end tests.
-//   clip_tool KIND IN OUT: the video IN once more as KIND; as shown it is the same.
+//   clip_tool KIND IN OUT: the video IN once more as KIND; as shown it is the same, but for
+//   clip_tool boxed IN OUT: a box in the left quarter, larger than who stands in the middle, from frame 20 on.
 //   clip_tool times FILE: "WIDTH HEIGHT FRAMES", then each frame's number and seconds.
 #include <fmt/format.h>
 
@@ -36,6 +37,16 @@ ByteImage squeezed(const ByteImage& shown) {
   return stored;
 }
 
+void cover(ByteImage& picture, int64_t index) {
+  if (index < 20) return;
+  const int top = picture.height() / 5 + static_cast<int>(index % 5);  // it moves
+  for (int y = top; y < top + 3 * picture.height() / 5; ++y) {
+    for (int x = 5; x < 5 + picture.width() / 4; ++x) {
+      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = static_cast<uint8_t>(60 + 40 * c);
+    }
+  }
+}
+
 void make(const std::string& kind, const std::string& in, const std::string& out) {
   ClipForTest clip;
   Video video = open_video(in).value();
@@ -46,6 +57,7 @@ void make(const std::string& kind, const std::string& in, const std::string& out
     if (dropped) continue;
     if (kind == "uneven") clip.times_ms.push_back(1000 + frame.time_ns / 1'000'000);
     ByteImage& shown = frame.images[0];
+    if (kind == "boxed") cover(shown, frame.index);
     pictures.push_back(kind == "turned" ? laid_down(shown) : kind == "squeezed" ? squeezed(shown) : std::move(shown));
   }
   if (kind == "turned") clip.display_matrix = {{0, 1 << 16, 0, -(1 << 16), 0, 0, 0, 0, 1 << 30}};

@@ -10,47 +10,40 @@ namespace silpose {
 
 AnnealedFilter::AnnealedFilter(StateBatch states, std::shared_ptr<const Resampler> resampler,
                                AnnealedFilterOptions options)
-    : resampler_(std::move(resampler)),
+    : SteppedParticles(std::move(states)),
+      resampler_(std::move(resampler)),
       between_layers_(make_resampler("systematic").value()),
-      options_(std::move(options)),
-      particles_(ParticleSet::uniform(std::move(states))) {
+      options_(std::move(options)) {
   check(resampler_ != nullptr, "AnnealedFilter: no resampler");
   check(options_.num_layers >= 1 && options_.num_layers < kMaxLayers, "AnnealedFilter: {} layers", options_.num_layers);
   check(options_.survival_rate > 0 && options_.survival_rate <= 1, "AnnealedFilter: survival rate {}",
         options_.survival_rate);
-  check(options_.deviation.size() == static_cast<size_t>(particles_.states.cols()),
-        "AnnealedFilter: {} deviations for {} columns", options_.deviation.size(), particles_.states.cols());
+  check(options_.deviation.size() == static_cast<size_t>(now_.particles.states.cols()),
+        "AnnealedFilter: {} deviations for {} columns", options_.deviation.size(), now_.particles.states.cols());
   check(options_.exchange >= 0 && options_.exchange <= 1, "AnnealedFilter: exchange {}", options_.exchange);
 }
 
 FilterReport AnnealedFilter::step(const Propagate& propagate, const Diffuse& diffuse,
                                   const LogLikelihood& log_likelihood, const Regenerate& regenerate) {
   FilterReport report;
-  const uint64_t step = step_++;
-  particles_.resample(*resampler_, regenerate, options_.seed, stream_of(step), report);
-  propagate(particles_.states, stream_of(step));
+  const uint64_t step = now_.step++;
+  now_.particles.resample(*resampler_, regenerate, options_.seed, stream_of(step), report);
+  propagate(now_.particles.states, stream_of(step));
   run_layers(step, diffuse, log_likelihood, report);
   return report;
 }
 
 FilterReport AnnealedFilter::search(const Diffuse& diffuse, const LogLikelihood& log_likelihood) {
   FilterReport report;
-  run_layers(step_++, diffuse, log_likelihood, report);
-  return report;
-}
-
-FilterReport AnnealedFilter::coast(const Propagate& propagate) {
-  FilterReport report;
-  propagate(particles_.states, stream_of(step_++));
-  report.effective_sample_size = effective_sample_size(particles_.weights());
+  run_layers(now_.step++, diffuse, log_likelihood, report);
   return report;
 }
 
 void AnnealedFilter::run_layers(uint64_t step, const Diffuse& diffuse, const LogLikelihood& log_likelihood,
                                 FilterReport& report) {
-  std::vector<double>& log_weights = particles_.log_weights;
+  std::vector<double>& log_weights = now_.particles.log_weights;
   for (int layer = 0;; ++layer) {
-    log_likelihood(particles_.states, log_weights);
+    log_likelihood(now_.particles.states, log_weights);
     const double exponent = annealing_exponent(log_weights, options_.survival_rate, options_.max_exponent);
     report.layer_exponent.push_back(exponent);
     for (double& value : log_weights) value *= exponent;
@@ -60,22 +53,22 @@ void AnnealedFilter::run_layers(uint64_t step, const Diffuse& diffuse, const Log
     if (layer + 1 == options_.num_layers) return;
 
     const uint64_t stream = stream_of(step, layer + 1);
-    const Eigen::RowVectorXd best = particles_.states.row(mode_index(log_weights));
+    const Eigen::RowVectorXd best = now_.particles.states.row(mode_index(log_weights));
     const std::vector<double> deviation = noise_deviation(layer);
-    particles_.states = recombine(stream);
-    diffuse(particles_.states, deviation, stream);
-    particles_.states.row(0) = best;
+    now_.particles.states = recombine(stream);
+    diffuse(now_.particles.states, deviation, stream);
+    now_.particles.states.row(0) = best;
   }
 }
 
 StateBatch AnnealedFilter::recombine(uint64_t stream) const {
   Rng rng(options_.seed, stream, kResamplingParticle);
-  const int num_particles = particles_.size();
-  const std::vector<int> first = between_layers_->resample(particles_.log_weights, num_particles, rng);
+  const int num_particles = now_.particles.size();
+  const std::vector<int> first = between_layers_->resample(now_.particles.log_weights, num_particles, rng);
   // Shuffled, for both lists come sorted and would pair every particle with itself.
-  std::vector<int> second = between_layers_->resample(particles_.log_weights, num_particles, rng);
+  std::vector<int> second = between_layers_->resample(now_.particles.log_weights, num_particles, rng);
   for (size_t i = second.size(); i > 1; --i) std::swap(second[i - 1], second[rng.index(i)]);
-  return crossover(particles_.states, first, second, options_.blocks, options_.exchange, options_.seed, stream);
+  return crossover(now_.particles.states, first, second, options_.blocks, options_.exchange, options_.seed, stream);
 }
 
 std::vector<double> AnnealedFilter::noise_deviation(int layer) const {
@@ -83,7 +76,8 @@ std::vector<double> AnnealedFilter::noise_deviation(int layer) const {
   const double scale = annealing_noise_scale(layer, options_.survival_rate);
   for (double& value : deviation) value *= scale;
   if (options_.adaptive_noise) {
-    const std::vector<double> spread = weighted_deviation(particles_.states, particles_.weights(), options_.circular);
+    const std::vector<double> spread =
+        weighted_deviation(now_.particles.states, now_.particles.weights(), options_.circular);
     for (size_t d = 0; d < deviation.size(); ++d) deviation[d] = std::min(options_.deviation[d], spread[d]);
   }
   return deviation;

@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "silpose/filter/particle_set.h"
+#include "silpose/filter/stepped_particles.h"
 
 namespace silpose {
 
@@ -28,7 +28,7 @@ struct AnnealedFilterOptions {
   uint64_t seed = 1;
 };
 
-class AnnealedFilter {
+class AnnealedFilter : public SteppedParticles {
  public:
   // Starts from states [N, D], equally weighted. `resampler` acts between steps; between layers it is systematic.
   // Errors: throws std::invalid_argument for options out of range.
@@ -42,24 +42,6 @@ class AnnealedFilter {
   // The layers alone, from the states as they are: a search in one still observation.
   FilterReport search(const Diffuse& diffuse, const LogLikelihood& log_likelihood);
 
-  // No observation: propagates only; weights stay.
-  FilterReport coast(const Propagate& propagate);
-
-  // ParticleSet::inject: candidates [K, D] for the K lowest weighted particles.
-  void inject(const StateBatch& candidates) { particles_.inject(candidates); }
-
-  // Starts over from states [N, D], equally weighted; the step counter goes on.
-  void restart(StateBatch states) { particles_ = ParticleSet::uniform(std::move(states)); }
-
-  [[nodiscard]] const ParticleSet& particles() const { return particles_; }
-
-  // What another filter of the same options goes on from, as this one would. REQUIRES: states of the same D.
-  [[nodiscard]] FilterState state() const { return {particles_, step_}; }
-  void restore(FilterState state) {
-    particles_ = std::move(state.particles);
-    step_ = state.step;
-  }
-
  private:
   void run_layers(uint64_t step, const Diffuse& diffuse, const LogLikelihood& log_likelihood, FilterReport& report);
   StateBatch recombine(uint64_t stream) const;
@@ -68,8 +50,6 @@ class AnnealedFilter {
   std::shared_ptr<const Resampler> resampler_;
   std::unique_ptr<const Resampler> between_layers_;
   AnnealedFilterOptions options_;
-  ParticleSet particles_;
-  uint64_t step_ = 0;
 };
 
 }  // namespace silpose

@@ -7,7 +7,7 @@
 #include <memory>
 #include <utility>
 
-#include "silpose/filter/particle_set.h"
+#include "silpose/filter/stepped_particles.h"
 
 namespace silpose {
 
@@ -16,7 +16,7 @@ struct ParticleFilterOptions {
   uint64_t seed = 1;
 };
 
-class ParticleFilter {
+class ParticleFilter : public SteppedParticles {
  public:
   // Starts from states [N, D], equally weighted.
   // Errors: throws std::invalid_argument without states or resampler, or for options out of range.
@@ -26,29 +26,9 @@ class ParticleFilter {
   // `regenerate` is needed when the resampler asks for new particles. Errors: throws std::invalid_argument without it.
   FilterReport step(const Propagate& propagate, const LogLikelihood& log_likelihood, const Regenerate& regenerate = {});
 
-  // No observation: propagates only; weights stay.
-  FilterReport coast(const Propagate& propagate);
-
-  // ParticleSet::inject: candidates [K, D] for the K lowest weighted particles.
-  void inject(const StateBatch& candidates) { particles_.inject(candidates); }
-
-  // Starts over from states [N, D], equally weighted; the step counter goes on.
-  void restart(StateBatch states) { particles_ = ParticleSet::uniform(std::move(states)); }
-
-  [[nodiscard]] const ParticleSet& particles() const { return particles_; }
-
-  // What another filter of the same options goes on from, as this one would. REQUIRES: states of the same D.
-  [[nodiscard]] FilterState state() const { return {particles_, step_}; }
-  void restore(FilterState state) {
-    particles_ = std::move(state.particles);
-    step_ = state.step;
-  }
-
  private:
   std::shared_ptr<const Resampler> resampler_;
   ParticleFilterOptions options_;
-  ParticleSet particles_;
-  uint64_t step_ = 0;
 };
 
 }  // namespace silpose

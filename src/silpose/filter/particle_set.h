@@ -52,14 +52,6 @@ struct ParticleSet {
   static auto members(auto& s) { return std::tie(s.states, s.log_weights); }
 };
 
-// What a filter goes on from, besides its options.
-struct FilterState {
-  ParticleSet particles;
-  uint64_t step = 0;
-
-  static auto members(auto& s) { return std::tie(s.particles, s.step); }
-};
-
 // The stream coordinate of a layer of a step. A step has at most kMaxLayers; layer 0 is the step's own.
 inline constexpr int kMaxLayers = 256;
 inline constexpr uint64_t stream_of(uint64_t step, int layer = 0) {

@@ -39,13 +39,17 @@ LandmarkMatch::LandmarkMatch(const BodyModel& body, const PinholeCamera& camera,
   }
 }
 
+double LandmarkMatch::cost_of(const Point& point, double squared) {
+  return point.weight * (kFreedom + 2) * std::log1p(squared / kFreedom);
+}
+
 double LandmarkMatch::cost(std::span<const double> pose) const {
   const std::vector<Rigid3> world_from_joint = body_->skeleton.forward_kinematics(pose);
   double sum = 0;
   for (const Point& point : points_) {
     const auto pixel = camera_.project(world_from_joint[static_cast<size_t>(point.joint_idx)] * point.x_in_joint);
     const double squared = pixel ? (*pixel - point.pixel).squaredNorm() / (deviation_px_ * deviation_px_) : kBehind;
-    sum += point.weight * (kFreedom + 2) * std::log1p(squared / kFreedom);
+    sum += cost_of(point, squared);
   }
   return sum;
 }
@@ -57,12 +61,12 @@ double LandmarkMatch::add(std::span<const double> pose, Eigen::VectorXd& gradien
     const Eigen::Vector3d x = motion.position(point.joint_idx, point.x_in_joint);
     const std::optional<Eigen::Vector2d> pixel = camera_.project(x);
     if (!pixel) {
-      sum += point.weight * (kFreedom + 2) * std::log1p(kBehind / kFreedom);
+      sum += cost_of(point, kBehind);
       continue;
     }
     const Eigen::Vector2d off = (*pixel - point.pixel) / deviation_px_;
     const double squared = off.squaredNorm();
-    sum += point.weight * (kFreedom + 2) * std::log1p(squared / kFreedom);
+    sum += cost_of(point, squared);
     const double weight = point.weight * (kFreedom + 2) / (kFreedom + squared);
     const Eigen::MatrixXd J = camera_.project_jacobian(x) * motion.jacobian(point.joint_idx, x) / deviation_px_;
     gradient += weight * J.transpose() * off;

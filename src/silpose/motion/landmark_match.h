@@ -37,6 +37,8 @@ class LandmarkMatch {
     Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
     double weight = 1;
   };
+  // What a landmark costs that is off by so many deviations, squared.
+  static double cost_of(const Point& point, double squared);
 
   const BodyModel* body_;
   PinholeCamera camera_;

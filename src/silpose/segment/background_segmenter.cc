@@ -6,17 +6,16 @@
 #include <optional>
 #include <utility>
 
-#include "silpose/base/state_bytes.h"
+#include "silpose/segment/blob_segmenter.h"
 #include "silpose/segment/depth_model.h"
 #include "silpose/segment/edge_matte.h"
 #include "silpose/segment/foreground.h"
 #include "silpose/segment/mask_confidence.h"
-#include "silpose/segment/trust_monitor.h"
 
 namespace silpose {
 namespace {
 
-class BackgroundSegmenter : public Segmenter {
+class BackgroundSegmenter : public BlobSegmenter {
  public:
   BackgroundSegmenter(BackgroundModel model, BackgroundSegmenterOptions options)
       : options_(std::move(options)), finder_(std::move(model)), blob_(options_.clean_up) {
@@ -37,23 +36,18 @@ class BackgroundSegmenter : public Segmenter {
       depth = depth_evidence(*seen, options_.depth->background);
     }
     const Mask found = finder_.find(luma_chroma, depth ? &*depth : nullptr);
-    const Mask blob = choose_blob(found, blob_, std::exchange(expected_, {}));
+    const Mask blob = subject_of(found, blob_);
     ByteImage confidence = finder_.confidence(found);
     doubt_changes(confidence, found, blob);
     const int grow_px = options_.clean_up.grow_px;
     // Colour alone must not decide the edge of what depth had a say in.
-    if (depth) return monitor_.judge(grow(blob, grow_px), std::move(confidence));
+    if (depth) return judge(grow(blob, grow_px), std::move(confidence));
     const EdgeMatte matte = refine_edge(blob, luma_chroma, finder_.model().median);
     lower_confidence(confidence, matte.confidence);
     forgive_edges(confidence, matte.mask);
-    return monitor_.judge(grow(matte.mask, grow_px), std::move(confidence));
+    return judge(grow(matte.mask, grow_px), std::move(confidence));
   }
-  void expect(Mask silhouette) override { expected_ = std::move(silhouette); }
   [[nodiscard]] int64_t first_index() const override { return options_.first_index; }
-  [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
-  void restore(std::string_view state) override {
-    check(from_bytes(state, monitor_), "BackgroundSegmenter: not a state of it");
-  }
   [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
   [[nodiscard]] std::string name() const override { return options_.name; }
 
@@ -62,11 +56,9 @@ class BackgroundSegmenter : public Segmenter {
   BackgroundSegmenterOptions options_;
   ForegroundFinder finder_;
   CleanUpOptions blob_;
-  TrustMonitor monitor_;
-  Mask expected_;
 };
 
-class OnlineSegmenter : public Segmenter {
+class OnlineSegmenter : public BlobSegmenter {
  public:
   OnlineSegmenter(OnlineMixture mixture, BackgroundSegmenterOptions options) : options_(std::move(options)) {
     if (mixture == OnlineMixture::kMog2) {
@@ -98,9 +90,8 @@ class OnlineSegmenter : public Segmenter {
       result.trust = 0;
       return result;
     }
-    return monitor_.judge(choose_blob(mask_from_image(bytes), options_.clean_up, std::exchange(expected_, {})));
+    return judge(subject_of(mask_from_image(bytes), options_.clean_up));
   }
-  void expect(Mask silhouette) override { expected_ = std::move(silhouette); }
   [[nodiscard]] bool sees_all() const override { return true; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
   [[nodiscard]] std::string name() const override { return options_.name; }
@@ -112,8 +103,6 @@ class OnlineSegmenter : public Segmenter {
   cv::Ptr<cv::BackgroundSubtractor> subtractor_;
   cv::Size size_;
   int num_seen_ = 0;
-  TrustMonitor monitor_;
-  Mask expected_;
 };
 
 }  // namespace

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "silpose/base/state_bytes.h"
-#include "silpose/segment/trust_monitor.h"
+#include "silpose/segment/blob_segmenter.h"
 
 namespace silpose {
 namespace {
@@ -13,7 +12,7 @@ constexpr double kGap = 0.003;  // see CleanUpOptions::join_gap: a key cuts few 
 // Parts of the picture and of the screen's hull from which, and below which, a warning is due.
 constexpr double kMuchOutside = 0.01, kLittleScreen = 0.6;
 
-class ChromaSegmenter : public Segmenter {
+class ChromaSegmenter : public BlobSegmenter {
  public:
   ChromaSegmenter(ScreenModel model, const std::string& input, const CleanUpOptions& clean_up)
       : model_(std::move(model)), clean_up_(clean_up) {
@@ -38,13 +37,7 @@ class ChromaSegmenter : public Segmenter {
       return error("frame {}: {}x{}, its screen {}x{}", index, image.width(), image.height(), model_.width(),
                    model_.height());
     }
-    return monitor_.judge(
-        choose_blob(find_before_screen(model_, to_luma_chroma(image)), clean_up_, std::exchange(expected_, {})));
-  }
-  void expect(Mask silhouette) override { expected_ = std::move(silhouette); }
-  [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
-  void restore(std::string_view state) override {
-    check(from_bytes(state, monitor_), "ChromaSegmenter: not a state of it");
+    return judge(subject_of(find_before_screen(model_, to_luma_chroma(image)), clean_up_));
   }
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
   [[nodiscard]] std::string name() const final {
@@ -55,8 +48,6 @@ class ChromaSegmenter : public Segmenter {
   ScreenModel model_;
   CleanUpOptions clean_up_;
   std::vector<std::string> warnings_;
-  TrustMonitor monitor_;
-  Mask expected_;
 };
 
 }  // namespace

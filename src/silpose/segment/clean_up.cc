@@ -33,6 +33,21 @@ Mask close_gaps(const Mask& mask, int radius) {
   return mask_from_mat(mat);
 }
 
+// Where the subject is expected, with a margin, as far as it lies in `part` of the picture.
+cv::Mat where_expected(const Mask& expected, const cv::Rect& part) {
+  cv::Mat near = cv::Mat::zeros(part.size(), CV_8U);
+  const Box box = expected.bounding_box();
+  if (box.empty()) return near;
+  const int margin = static_cast<int>(kExpectedMargin * box.height);
+  const cv::Rect around = cv::Rect(box.x - margin, box.y - margin, box.width + 2 * margin, box.height + 2 * margin) &
+                          cv::Rect(0, 0, expected.width(), expected.height());
+  const cv::Rect common = around & part;
+  if (common.empty()) return near;
+  const cv::Mat grown = within(mat_from_mask(expected)(around), margin);
+  grown(common - around.tl()).copyTo(near(common - part.tl()));
+  return near;
+}
+
 cv::Mat disc(int radius) {
   cv::Mat element(2 * radius + 1, 2 * radius + 1, CV_8U);
   for (int y = -radius; y <= radius; ++y) {
@@ -93,7 +108,6 @@ Mask grow(const Mask& mask, int radius_px) {
 
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected) {
   options.check();
-  const bool is_expected = expected.count() > 0;
   check(expected.width() == 0 || (expected.width() == foreground.width() && expected.height() == foreground.height()),
         "choose_blob: a silhouette of {}x{} is expected, picture {}x{}", expected.width(), expected.height(),
         foreground.width(), foreground.height());
@@ -128,11 +142,7 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Ma
   }
   cv::Mat labels;
   const auto count = static_cast<size_t>(cv::connectedComponents(joined, labels, 8, CV_32S));
-  cv::Mat near;  // where the subject is expected
-  if (is_expected) {
-    const int margin = static_cast<int>(kExpectedMargin * expected.bounding_box().height);
-    near = within(mat_from_mask(expected), margin)(cv::Rect(x0, y0, x1 - x0, y1 - y0));
-  }
+  const cv::Mat near = where_expected(expected, cv::Rect(x0, y0, x1 - x0, y1 - y0));
   std::vector<int64_t> area(count, 0), inside(count, 0), expected_area(count, 0);
   for (int y = 0; y < mat.rows; ++y) {
     const int* row = labels.ptr<int>(y);
@@ -145,7 +155,7 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Ma
           !options.region || (x0 + x >= options.region->x && x0 + x < options.region->x + options.region->width &&
                               y0 + y >= options.region->y && y0 + y < options.region->y + options.region->height);
       if (in_region) ++inside[label];
-      if (is_expected && near.at<uint8_t>(y, x)) ++expected_area[label];
+      if (near.at<uint8_t>(y, x) != 0) ++expected_area[label];
     }
   }
   const double min_area = options.min_blob_px >= 0 ? options.min_blob_px : kMinBlob * cut.width() * cut.height();

@@ -4,15 +4,14 @@
 #include <utility>
 #include <vector>
 
-#include "silpose/base/state_bytes.h"
-#include "silpose/segment/trust_monitor.h"
+#include "silpose/segment/blob_segmenter.h"
 
 namespace silpose {
 namespace {
 
 constexpr double kLittleMoves = 0.002;  // of the picture
 
-class DepthSegmenter : public Segmenter {
+class DepthSegmenter : public BlobSegmenter {
  public:
   DepthSegmenter(DepthFiles depth, const std::optional<DepthRange>& range, const CleanUpOptions& clean_up)
       : depth_(std::move(depth)), range_(range), clean_up_(clean_up) {}
@@ -38,14 +37,9 @@ class DepthSegmenter : public Segmenter {
     const Result<DepthImage> depth = depth_.image_of(index);
     if (!depth) return depth.failure();
     const Mask before = range_ ? within_depth_range(*depth, *range_) : nearer_than_background(*depth, background_);
-    return monitor_.judge(choose_blob(before, clean_up_, std::exchange(expected_, {})));
+    return judge(subject_of(before, clean_up_));
   }
   [[nodiscard]] int64_t first_index() const override { return depth_.first_number() + depth_.offset; }
-  void expect(Mask silhouette) override { expected_ = std::move(silhouette); }
-  [[nodiscard]] std::string state() const override { return to_bytes(monitor_); }
-  void restore(std::string_view state) override {
-    check(from_bytes(state, monitor_), "DepthSegmenter: not a state of it");
-  }
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
   [[nodiscard]] std::string name() const override {
     return range_ ? fmt::format("depth {:g} to {:g} m", range_->min_m, range_->max_m) : "depth auto";
@@ -57,8 +51,6 @@ class DepthSegmenter : public Segmenter {
   CleanUpOptions clean_up_;
   DepthImage background_;
   std::vector<std::string> warnings_;
-  TrustMonitor monitor_;
-  Mask expected_;
 };
 
 }  // namespace

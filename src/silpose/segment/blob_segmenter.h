@@ -1,0 +1,35 @@
+// BlobSegmenter: what segmenters share that find all foreground first and then have to tell which of it is the subject.
+// Threads: one thread per segmenter.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "silpose/base/state_bytes.h"
+#include "silpose/segment/segmenter.h"
+#include "silpose/segment/trust_monitor.h"
+
+namespace silpose {
+
+class BlobSegmenter : public Segmenter {
+ public:
+  void expect(Mask silhouette) final { expected_ = std::move(silhouette); }
+  [[nodiscard]] std::string state() const final { return to_bytes(monitor_); }
+  void restore(std::string_view state) final { check(from_bytes(state, monitor_), "BlobSegmenter: not a state of it"); }
+
+ protected:
+  // choose_blob() with what is expected of this picture, and of no later one.
+  Mask subject_of(const Mask& foreground, const CleanUpOptions& clean_up) {
+    return choose_blob(foreground, clean_up, std::exchange(expected_, {}));
+  }
+  Segmentation judge(Mask mask, ByteImage confidence = {}) {
+    return monitor_.judge(std::move(mask), std::move(confidence));
+  }
+
+ private:
+  TrustMonitor monitor_;
+  Mask expected_;
+};
+
+}  // namespace silpose
