@@ -95,6 +95,10 @@ Result<BodyModel> build_body(const std::string& model, Console& console) {
   return body;
 }
 
+double size_deviation_of(const std::string& model) {
+  return is_human(model) ? stature_deviation(parse_phenotype(without_dof(model)).value()) : 0;
+}
+
 Result<std::shared_ptr<const BodyModel>> choose_body(const std::string& model, Console& console) {
   if (fs::path(model).extension() == ".body") {
     Result<BodyModel> body = load_body(model);

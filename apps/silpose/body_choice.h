@@ -28,7 +28,11 @@ bool is_up_to_date(const std::filesystem::path& body_file);
 // The body of a --model. Errors: unknown model, phenotype out of range, body data missing or of another hash.
 Result<std::shared_ptr<const BodyModel>> choose_body(const std::string& model, Console& console);
 
-// The same, always built, never taken from a kept file.
+// How far the subject's size may be from the body's of a --model that is_model() takes, one standard deviation,
+// relative: 0 where the height is given, or a .body file.
+double size_deviation_of(const std::string& model);
+
+// choose_body(), always built, never taken from a kept file.
 Result<BodyModel> build_body(const std::string& model, Console& console);
 
 }  // namespace silpose::app

@@ -16,6 +16,7 @@
 #include "apps/silpose/track_result.h"
 #include "apps/silpose/track_run.h"
 #include "apps/silpose/track_writer.h"
+#include "silpose/evaluate/interval_coverage.h"
 
 namespace silpose::app {
 namespace {
@@ -62,6 +63,12 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   const std::vector<std::string> of_input = source->warnings();
   warnings.insert(warnings.end(), of_input.begin(), of_input.end());
   warnings.insert(warnings.end(), tracked->warnings.begin(), tracked->warnings.end());
+  if (cameras->cameras.size() == 1 && !tracked->body_fit && tracked->used.size_deviation > 0) {
+    warnings.push_back(fmt::format(
+        "--model {}: {:.2f} m is assumed, for no height is given; nine in ten people are within {:.0f} % of "
+        "it, and distances as far off as that",
+        options.model, (*body)->height_m, 100 * kSpreadsOf90Percent * tracked->used.size_deviation));
+  }
   const bool is_recorded = !tracked->recording.steps.empty();
   if (is_recorded && summarise(tracked->recording).frames_tracked == 0) {
     warnings.emplace_back("no person was seen: there is no pose in this result");

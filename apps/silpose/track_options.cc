@@ -159,6 +159,7 @@ TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<cons
   tracker.body = std::move(body);
   tracker.cameras = std::move(cameras);
   tracker.seed = seed;
+  tracker.size_deviation = size_deviation_of(options.model);
   // Without a file the floor is a guess: where the camera was estimated, poses pressed on it came out worse, too.
   if (!tracker.floor && !options.camera.has_file()) tracker.floor = false;
   tracker.root_fixed = options.root == "fixed";

@@ -78,6 +78,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run = run_facts(told.common);
   run["model"] = told.options.model;
   run["body"] = told.writer.body().name;
+  run["size_deviation"] = tracked.used.size_deviation;
   if (tracked.body_fit && !tracked.recording.steps.empty()) run["fitted"] = facts_of(*tracked.body_fit);
   if (told.camera.estimate) run["camera_estimate"] = facts_of(*told.camera.estimate);
   run["frames"] = tracked.num_frames;

@@ -19,6 +19,9 @@ namespace {
 // A checkpoint is written this often, less often where writing takes longer than a fiftieth of that.
 constexpr double kLeastInterval_s = 2, kIntervalOverWriting = 50;
 
+// What a size that was told by the floor may be off, of itself: as far as rendered subjects were (docs/results.md).
+constexpr double kOfCameraFile = 0.02;
+
 class TrackRun {
  public:
   TrackRun(const TrackOptions& options, TrackerOptions tracker, ObservationSource& source, TrackWriter& writer,
@@ -259,6 +262,8 @@ class TrackRun {
       return {};
     }
     tracker_options_.body = fit->body;
+    tracker_options_.size_deviation = fit->size ? std::max(fit->size->deviation, kOfCameraFile) : 0;
+    tracked_.used.size_deviation = tracker_options_.size_deviation;
     writer_.set_fitted_body(fit->body);
     tracked_.body_fit = std::move(fit);
     return {};

@@ -26,6 +26,10 @@ struct Phenotype {
 // Errors: unknown or repeated key, not a number, out of range; names the key.
 Result<Phenotype> parse_phenotype(const std::string& text);
 
+// How far the stature of such people is from the body's, one standard deviation, relative: 0 where the height is given.
+// Source: adults, references.bib: stoudt1965.
+double stature_deviation(const Phenotype& phenotype);
+
 class MakeHumanData {
  public:
   // Reads base mesh, rig, weights and the adult macro targets from a folder made by scripts/fetch-body-data.

@@ -60,4 +60,10 @@ Result<Phenotype> parse_phenotype(const std::string& text) {
   return phenotype;
 }
 
+double stature_deviation(const Phenotype& phenotype) {
+  if (phenotype.height_m) return 0;
+  constexpr double kOfOneSex = 0.042, kBetweenSexes = 0.04;  // either sex's mean from that of both
+  return std::hypot(kOfOneSex, 2 * kBetweenSexes * std::sqrt(phenotype.sex * (1 - phenotype.sex)));
+}
+
 }  // namespace silpose

@@ -27,6 +27,14 @@ TEST(ParsePhenotype, HasDefaults) {
   EXPECT_EQ(parse_phenotype("human:sex=0.25").value().sex, 0.25);
 }
 
+TEST(StatureDeviation, IsOfThoseWhoAreMeant) {
+  const auto of = [](const char* text) { return stature_deviation(parse_phenotype(text).value()); };
+  EXPECT_EQ(of("human:height=1.7"), 0);
+  EXPECT_NEAR(of("human:sex=m"), 0.042, 1e-9);
+  EXPECT_NEAR(of("human:sex=f,age=60"), 0.042, 1e-9);
+  EXPECT_NEAR(of("human"), 0.058, 1e-3) << "9.5 cm of 1.67 m";
+}
+
 TEST(ParsePhenotype, NamesTheBadKey) {
   for (const auto& [text, named] : {std::pair{"human:tail=1", "tail"},
                                     {"human:age=12", "age"},

@@ -26,7 +26,8 @@ double wrongness(const CoverageEvidence& evidence) {
 
 }  // namespace
 
-BodyError::BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras) {
+BodyError::BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras, double size_deviation)
+    : size_deviation_(size_deviation) {
   auto stretched = std::make_shared<const BodyModel>(stretchable(body));
   deviation_ = pose_deviation(body.skeleton);
   lengths_ = stretch_covariance(stretched->skeleton);
@@ -36,12 +37,41 @@ BodyError::BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras) 
 BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::span<const double> pose,
                                         CoverageLikelihood::Scratch& scratch) const {
   const BodyModel& body = likelihood_->body();
-  const auto D = std::ssize(pose), S = lengths_.rows();
   const size_t num_landmarks = static_cast<size_t>(body.skeleton.num_joints()) + body.end_points.size();
   Variance result{std::vector<double>(pose.size(), 0.0),
                   std::vector<Eigen::Vector3d>(num_landmarks, Eigen::Vector3d::Zero())};
+  add_wrong_lengths(evidence, pose, scratch, result);
+  const auto has_a_say = [](const CoverageEvidence::View& view) { return view.trust > 0; };
+  if (std::ranges::count_if(evidence.views, has_a_say) == 1) {
+    add_wrong_size(likelihood_->cameras()[*evidence.first_seen()], pose, result);
+  }
+  return result;
+}
+
+// The same silhouette, whatever the size: everything grows about the camera's centre.
+void BodyError::add_wrong_size(const PinholeCamera& camera, std::span<const double> pose, Variance& result) const {
+  if (size_deviation_ <= 0) return;
+  const BodyModel& body = likelihood_->body();
+  std::vector<double> stretched(pose.begin(), pose.end());
+  stretched.resize(static_cast<size_t>(body.skeleton.num_dofs()), 0.0);
+  const std::vector<Eigen::Vector3d> landmarks = landmark_positions(body, stretched);
+  const Eigen::Vector3d centre = camera.centre_in_world();
+  for (size_t l = 0; l < landmarks.size(); ++l) {
+    result.landmarks[l] += (size_deviation_ * (landmarks[l] - centre)).cwiseAbs2();
+  }
+  const Eigen::Vector3d of_root = size_deviation_ * (landmarks.front() - centre);
+  for (size_t d = 0; d < pose.size(); ++d) {
+    const Dof& dof = body.skeleton.dofs()[d];
+    if (dof.is_translation && dof.joint_idx == 0) result.dofs[d] += std::pow(dof.axis.dot(of_root), 2);
+  }
+}
+
+void BodyError::add_wrong_lengths(const CoverageEvidence& evidence, std::span<const double> pose,
+                                  CoverageLikelihood::Scratch& scratch, Variance& result) const {
+  const BodyModel& body = likelihood_->body();
+  const auto D = std::ssize(pose), S = lengths_.rows();
   const double wrong = wrongness(evidence);
-  if (wrong == 0 || S == 0) return result;
+  if (wrong == 0 || S == 0) return;
 
   std::vector<double> stretched(pose.begin(), pose.end());
   stretched.resize(static_cast<size_t>(D + S), 0.0);
@@ -56,10 +86,9 @@ BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::s
   answer.topRows(D) = -held.ldlt().solve(hessian.topRightCorner(D, S));
   answer.bottomRows(S).setIdentity();
   const Eigen::MatrixXd covariance = wrong * answer * lengths_ * answer.transpose();
-  for (Eigen::Index d = 0; d < D; ++d) result.dofs[static_cast<size_t>(d)] = std::max(covariance(d, d), 0.0);
-  result.landmarks = landmark_variances(body, stretched, covariance);
-  for (Eigen::Vector3d& variance : result.landmarks) variance = variance.cwiseMax(0);
-  return result;
+  for (Eigen::Index d = 0; d < D; ++d) result.dofs[static_cast<size_t>(d)] += std::max(covariance(d, d), 0.0);
+  const std::vector<Eigen::Vector3d> of_landmarks = landmark_variances(body, stretched, covariance);
+  for (size_t l = 0; l < of_landmarks.size(); ++l) result.landmarks[l] += of_landmarks[l].cwiseMax(0);
 }
 
 }  // namespace silpose

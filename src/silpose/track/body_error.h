@@ -2,6 +2,8 @@
 // longer or shorter (body/stretchable.h); a pose fitted with wrong lengths is off by how the fit answers to them, and
 // all frames are off alike, so that neither time nor a good overlap makes it smaller. How wrong the body is shows in
 // how badly its outline fits: with outlines as clean as exact masks of the right body leave them nothing is added.
+// But one camera sees a larger body further away as it sees a smaller one nearby: how well the size is known has to be
+// told, and is added whatever the outline.
 // Based on: consider covariance of parameters that are not estimated (references.bib: schmidt1966).
 // Threads: constant after construction; one CoverageLikelihood::Scratch of likelihood() per thread.
 #pragma once
@@ -18,7 +20,8 @@ namespace silpose {
 class BodyError {
  public:
   // `body` is a level of detail; the stretchable one is made of it.
-  BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras);
+  // `size_deviation` is TrackerOptions'.
+  BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras, double size_deviation = 0);
 
   [[nodiscard]] const CoverageLikelihood& likelihood() const { return *likelihood_; }
 
@@ -31,9 +34,14 @@ class BodyError {
                                   CoverageLikelihood::Scratch& scratch) const;
 
  private:
+  void add_wrong_lengths(const CoverageEvidence& evidence, std::span<const double> pose,
+                         CoverageLikelihood::Scratch& scratch, Variance& result) const;
+  void add_wrong_size(const PinholeCamera& camera, std::span<const double> pose, Variance& result) const;
+
   std::unique_ptr<CoverageLikelihood> likelihood_;  // of the stretchable body
-  Eigen::MatrixXd lengths_;                         // [S, S] prior covariance
-  std::vector<double> deviation_;                   // [D] motion/noise.h's pose_deviation
+  double size_deviation_;
+  Eigen::MatrixXd lengths_;        // [S, S] prior covariance
+  std::vector<double> deviation_;  // [D] motion/noise.h's pose_deviation
 };
 
 }  // namespace silpose

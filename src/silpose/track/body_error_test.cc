@@ -13,8 +13,9 @@ namespace {
 
 class BodyErrorTest : public ::testing::Test {
  protected:
-  BodyError::Variance variance(double noise, const std::vector<PinholeCamera>& cameras) const {
-    const BodyError error(*body_, cameras);
+  BodyError::Variance variance(double noise, const std::vector<PinholeCamera>& cameras,
+                               double size_deviation = 0) const {
+    const BodyError error(*body_, cameras, size_deviation);
     std::vector<Observation> observations;
     for (const PinholeCamera& camera : cameras) {
       Observation observation;
@@ -46,6 +47,18 @@ TEST_F(BodyErrorTest, ASizeThatIsUnsureIsADepthThatIsUnsure) {
   const double depth = std::sqrt(one.dofs[2]), across = std::sqrt(one.dofs[0]);
   EXPECT_GT(depth, 0.02);  // metres: more than half a percent of 5 m
   EXPECT_LT(across, 0.3 * depth);
+}
+
+TEST_F(BodyErrorTest, ASizeThatWasOnlyGuessedIsADepthThatIsUnsureHoweverWellTheOutlineFits) {
+  const auto one = variance(1, {front_}, 0.05);
+  EXPECT_NEAR(std::sqrt(one.dofs[2]), 0.05 * 5, 0.01);  // root_tz, 5 m before the camera
+  EXPECT_NEAR(std::sqrt(one.dofs[0]), 0, 0.01);
+  for (size_t d = 3; d < one.dofs.size(); ++d) EXPECT_EQ(one.dofs[d], 0) << body_->skeleton.dofs()[d].name;
+  const size_t head_top = landmark_names(*body_).size() - 5;
+  ASSERT_EQ(landmark_names(*body_)[head_top], "head_top");
+  EXPECT_NEAR(std::sqrt(one.landmarks[head_top].z()), 0.05 * 5, 0.02);
+  EXPECT_NEAR(std::sqrt(one.landmarks[head_top].y()), 0.05 * (body_->height_m - 1), 0.01);
+  for (const double v : variance(1, {front_, side_}, 0.05).dofs) EXPECT_EQ(v, 0) << "two cameras tell the size";
 }
 
 TEST_F(BodyErrorTest, ASecondCameraHelps) {

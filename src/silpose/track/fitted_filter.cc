@@ -35,7 +35,7 @@ FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const 
                            std::shared_ptr<const Plausibility> plausibility)
     : fine_(fine),
       mixture_(std::move(fine), coarse, std::move(plausibility), mixture_options(options)),
-      body_error_(coarse->body(), options.cameras) {}
+      body_error_(coarse->body(), options.cameras, options.size_deviation) {}
 
 void FittedFilter::start(std::span<const StartingPose> starts) {
   mixture_.start(poses_of(starts));

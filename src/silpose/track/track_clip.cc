@@ -300,7 +300,7 @@ class ClipTracker {
   std::vector<StepReport> reports(const SmoothedPoses& smoothed) const {
     const BodyModel& body = *options_.body;
     std::vector<StepReport> reports = waiting(0, clip_.size());
-    const BodyError body_error(level_of_detail(body, kBodyErrorVertices), options_.cameras);
+    const BodyError body_error(level_of_detail(body, kBodyErrorVertices), options_.cameras, options_.size_deviation);
     parallel_for(smoothed.poses.size(), 4, [&](size_t begin, size_t end) {
       CoverageLikelihood::Scratch scratch(*likelihood_), of_stretched(body_error.likelihood());
       for (size_t i = begin; i < end; ++i) {

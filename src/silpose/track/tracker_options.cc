@@ -74,6 +74,8 @@ void TrackerOptions::check() const {
           fmt::format("resample below {}, not within 0..1", resample_below));
   require(*all.lod_vertices == 0 || *all.lod_vertices >= 100,
           fmt::format("{} vertices, not at least 100", *all.lod_vertices));
+  require(std::isfinite(size_deviation) && size_deviation >= 0 && size_deviation < 1,
+          fmt::format("size deviation {}, not within [0, 1)", size_deviation));
   const auto num_dofs = static_cast<size_t>(body->skeleton.num_dofs());
   require(!initial_pose || initial_pose->size() == num_dofs,
           fmt::format("initial pose of {} numbers for {} DOF", initial_pose ? initial_pose->size() : 0, num_dofs));

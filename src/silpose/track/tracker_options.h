@@ -19,6 +19,9 @@ enum class Estimate { kMean, kMode, kCluster };
 struct TrackerOptions {
   std::shared_ptr<const BodyModel> body;  // full mesh; the tracker makes its own level of detail
   std::vector<PinholeCamera> cameras;     // [C]
+  // How far the subject's size may be from the body's, one standard deviation, relative. One camera cannot tell size
+  // from distance, so it goes into the spread; several can.
+  double size_deviation = 0;
   std::string preset = "default";         // "default", "accurate" or "thesis"; fills what is left unset below
   // The fitted mixture; unset where a sampling filter is asked for.
   std::optional<int> num_hypotheses;
