@@ -85,7 +85,12 @@ class StateReader {
 
   template <class T>
   bool get(T& value) {
-    if constexpr (Plain<T>) {
+    if constexpr (std::is_same_v<T, bool>) {
+      uint8_t byte = 0;  // a bool must not even hold anything but 0 and 1
+      if (!get(byte) || byte > 1) return false;
+      value = byte == 1;
+      return true;
+    } else if constexpr (Plain<T>) {
       return get_block(&value, 1);
     } else if constexpr (HasMembers<T>) {
       return get_all(T::members(value));

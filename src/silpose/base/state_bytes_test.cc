@@ -5,6 +5,7 @@
 #include <array>
 #include <deque>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "silpose/base/rng.h"
@@ -61,6 +62,13 @@ TEST(StateBytes, TooFewOrTooManyAreRefused) {
   EXPECT_FALSE(from_bytes(bytes + "x", read));
 }
 
+TEST(StateBytes, ABoolIsOneOfTwo) {
+  bool value = false;
+  EXPECT_TRUE(from_bytes(std::string(1, '\1'), value));
+  EXPECT_TRUE(value);
+  EXPECT_FALSE(from_bytes(std::string(1, '\2'), value));
+}
+
 TEST(StateBytes, WhateverTheCountsSayNoMemoryIsTakenForThem) {
   const std::string good = to_bytes(some_state());
   Rng rng(3);
@@ -69,8 +77,8 @@ TEST(StateBytes, WhateverTheCountsSayNoMemoryIsTakenForThem) {
     for (int k = 0; k < 3; ++k) {
       bytes[rng.index(bytes.size())] = static_cast<char>(rng.uniform() < 0.5 ? 0xff : rng.index(256));
     }
-    State read;
-    (void)from_bytes(bytes, read);  // must not crash nor take all memory
+    const auto read = std::make_unique<State>();  // GCC 12 is wrong about one on the stack: maybe uninitialised
+    (void)from_bytes(bytes, *read);  // must not crash nor take all memory
   }
 }
 
