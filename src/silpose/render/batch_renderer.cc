@@ -6,7 +6,6 @@
 #include "silpose/render/outline_scan.h"
 #include "silpose/render/projected_skin.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/render/span_count.h"
 #include "silpose/shape/normalised_silhouette.h"
 
 namespace silpose {
@@ -32,7 +31,7 @@ struct BatchRenderer::Impl {
         const std::optional<Window> window = choose_window(projected, outline);
         if (!window) continue;
         scan(*window, projected, outline);
-        out[n] = count_spans(outline, observed);
+        out[n] = outline.count(observed);
       }
     });
   }
@@ -47,7 +46,7 @@ struct BatchRenderer::Impl {
     const PixelBounds& bounds = projected.bounds;
     if (bounds.x0 >= 0 && bounds.y0 >= 0 && bounds.x1 <= camera.width && bounds.y1 <= camera.height) return bounds;
     scan({.width = camera.width, .height = camera.height}, projected, outline);
-    return bounds_of_spans(outline);
+    return outline.bounds();
   }
 
   std::shared_ptr<const BodyModel> body;

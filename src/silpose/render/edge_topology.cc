@@ -56,6 +56,7 @@ EdgeTopology::EdgeTopology(std::span<const Face> mesh_faces)
       }
     }
   }
+  strips = StripOrder(faces, neighbour);
 }
 
 }  // namespace silpose

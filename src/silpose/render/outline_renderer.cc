@@ -1,7 +1,6 @@
 #include "silpose/base/check.h"
 #include "silpose/render/outline_scan.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/render/span_count.h"
 
 namespace silpose {
 
@@ -28,7 +27,7 @@ void OutlineRenderer::draw(std::span<const Eigen::Vector2f> pixels, const Window
     mask = Mask(window.width, window.height);
   }
   scan(pixels, window);
-  set_spans(scratch_->outline, mask);
+  scratch_->outline.draw(mask);
 }
 
 OutlineRenderer::Counts OutlineRenderer::count(std::span<const Eigen::Vector2f> pixels, const Window& window,
@@ -37,7 +36,7 @@ OutlineRenderer::Counts OutlineRenderer::count(std::span<const Eigen::Vector2f> 
         "OutlineRenderer: mask of {}x{} for a window of {}x{}", observed.width(), observed.height(), window.width,
         window.height);
   scan(pixels, window);
-  return count_spans(scratch_->outline, observed);
+  return scratch_->outline.count(observed);
 }
 
 }  // namespace silpose

@@ -1,6 +1,6 @@
 // ProjectedSkin: from a pose straight to pixels. Camera and, where the lens is straight, its intrinsics are folded into
-// the joint matrices, so that skinning yields homogeneous pixels. Vertices are handled four at a time, sorted by the
-// joints that move them; their order ("slots") is therefore not the mesh's, and faces() are given in slots.
+// the joint matrices, so that skinning yields homogeneous pixels. Vertices are handled in chunks, sorted by the joints
+// that move them; their order ("slots") is therefore not the mesh's, and faces() are given in slots.
 // Source: linear blend skinning (references.bib: magnenat1988).
 // Threads: constant after construction; one Scratch per thread.
 #pragma once
@@ -13,6 +13,7 @@
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/render/raster_grid.h"
+#include "silpose/render/skin_kernels.h"
 #include "silpose/shape/window.h"
 
 namespace silpose {
@@ -22,16 +23,16 @@ class ProjectedSkin {
   ProjectedSkin(const BodyModel& body, const PinholeCamera& camera);  // keeps references
 
   [[nodiscard]] std::span<const Face> faces() const { return faces_; }
-  [[nodiscard]] size_t num_slots() const { return 4 * chunks_.size(); }
+  [[nodiscard]] size_t num_slots() const { return kChunkLanes * chunks_.size(); }
   // The mesh's vertex at each slot [slots].
   [[nodiscard]] std::span<const uint32_t> vertex_of_slot() const { return vertex_of_slot_; }
 
   // What one thread needs, and where project() leaves the pixels.
   struct Scratch {
     std::vector<Rigid3> world_from_joint;
-    std::vector<Eigen::Array4f> matrices;     // [J, 12] each number four times
-    std::vector<Eigen::Array4f> x, y, depth;  // [chunks] pixels; NaN where unseen
-    PixelBounds bounds;                       // of what is seen
+    std::vector<float> matrices;           // [J, 3, 4]
+    std::vector<ChunkFloats> x, y, depth;  // [chunks] pixels; x is NaN where unseen
+    PixelBounds bounds;                    // of what is seen
     bool some_unseen = false;
     std::vector<GridPoint> points;  // [slots] what round() makes of them
   };
@@ -46,25 +47,15 @@ class ProjectedSkin {
   void copy_pixels(const Scratch& scratch, std::span<Eigen::Vector2f> pixels) const;
 
  private:
-  // Four vertices and the joints that move any of them: entries [begin, end).
-  struct Chunk {
-    uint32_t begin = 0, end = 0;
-  };
-  // One joint's part of a chunk: rest coordinates times weight, and the weight.
-  struct Entry {
-    Eigen::Array4f x, y, z, w;
-  };
-
   void set_matrices(std::span<const double> pose, Scratch& scratch) const;
-  void distort(Scratch& scratch) const;
   bool leave_out_unseen(Scratch& scratch) const;
 
   const BodyModel* body_;
   const PinholeCamera* camera_;
   std::vector<Face> faces_;
   std::vector<uint32_t> vertex_of_slot_;
-  std::vector<Chunk> chunks_;
-  std::vector<Entry> entries_;
+  std::vector<SkinChunk> chunks_;
+  std::vector<SkinEntry> entries_;
   std::vector<uint32_t> entry_joint_;
 };
 

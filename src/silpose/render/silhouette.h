@@ -18,6 +18,7 @@
 #include "silpose/geometry/camera.h"
 #include "silpose/geometry/mesh.h"
 #include "silpose/image/mask.h"
+#include "silpose/render/strip_order.h"
 #include "silpose/shape/window.h"
 
 namespace silpose {
@@ -35,6 +36,7 @@ struct EdgeTopology {
     std::vector<std::array<uint32_t, 2>> vertices, faces;
   } edges;
   uint32_t num_vertices = 0;  // largest index + 1
+  StripOrder strips;
 };
 
 // Vertices [V] in world coordinates to image pixels [V]; vertices nearer than kNear become NaN.
@@ -49,7 +51,7 @@ void draw_silhouette_reference(std::span<const Eigen::Vector2f> pixels, std::spa
 std::optional<PixelBounds> pixel_bounds(std::span<const Eigen::Vector2f> pixels);
 
 // The fast renderer. Source: non-zero winding rule; every triangle turned to face the camera adds +-1 along the edges
-// whose neighbour faces away or is missing; crossings per scanline are summed along the row.
+// whose neighbour faces away or is missing; crossings are summed down the columns.
 class OutlineRenderer {
  public:
   explicit OutlineRenderer(const EdgeTopology& topology);  // keeps a reference

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "silpose/base/rng.h"
+#include "silpose/render/simd_targets.h"
 
 namespace silpose {
 namespace {
@@ -18,22 +19,23 @@ struct Shape {
   std::vector<Face> faces;
 };
 
-// Draws both ways; they must agree to the pixel.
+// Draws both ways, the fast one under every instruction set; they must agree to the pixel.
 Mask draw(const Pixels& pixels, const std::vector<Face>& faces, const Window& window) {
   Mask reference, fast;
   draw_silhouette_reference(pixels, faces, window, reference);
   const EdgeTopology topology(faces);
   OutlineRenderer renderer(topology);
-  renderer.draw(pixels, window, fast);
-  EXPECT_EQ(text_from_mask(fast), text_from_mask(reference));
-
   Mask observed(window.width, window.height);
   for (int y = 0; y < window.height; ++y) {
     for (int x = 0; x < window.width; ++x) observed.set(x, y, (x * 7 + y * 5) % 11 < 5);
   }
-  const OutlineRenderer::Counts counts = renderer.count(pixels, window, observed);
-  EXPECT_EQ(counts.model, reference.count());
-  EXPECT_EQ(counts.both, and_count(reference, observed));
+  for_each_simd_target([&](const char* name) {
+    renderer.draw(pixels, window, fast);
+    EXPECT_EQ(fast, reference) << name << "\n" << text_from_mask(fast) << "\n" << text_from_mask(reference);
+    const OutlineRenderer::Counts counts = renderer.count(pixels, window, observed);
+    EXPECT_EQ(counts.model, reference.count()) << name;
+    EXPECT_EQ(counts.both, and_count(reference, observed)) << name;
+  });
   return reference;
 }
 
@@ -199,6 +201,12 @@ TEST(EdgeTopology, KnowsNeighbours) {
   const EdgeTopology twisted(std::vector<Face>{{0, 1, 2}, {0, 1, 3}});
   EXPECT_EQ(twisted.neighbour[0][0], -1);
   EXPECT_EQ(twisted.edges.faces.size(), 6u);
+}
+
+TEST(SimdTargets, AreSeveralOnThisProcessor) {
+  std::vector<std::string> names;
+  for_each_simd_target([&](const char* name) { names.emplace_back(name); });
+  EXPECT_GE(names.size(), 2u);
 }
 
 TEST(Projection, LeavesOutWhatIsBehindTheCamera) {
