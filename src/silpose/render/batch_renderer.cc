@@ -1,5 +1,7 @@
+#include <mutex>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
@@ -9,6 +11,40 @@
 #include "silpose/shape/normalised_silhouette.h"
 
 namespace silpose {
+namespace {
+
+// What one thread draws a pose with.
+struct PoseScratch {
+  explicit PoseScratch(const EdgeTopology& topology) : outline(topology) {}
+  ProjectedSkin::Scratch projected;
+  OutlineScan outline;
+};
+
+// Keeps scratch from one range of poses to the next, so that nothing is allocated once every thread has had its own.
+class ScratchPool {
+ public:
+  [[nodiscard]] std::unique_ptr<PoseScratch> take(const EdgeTopology& topology) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!free_.empty()) {
+        std::unique_ptr<PoseScratch> scratch = std::move(free_.back());
+        free_.pop_back();
+        return scratch;
+      }
+    }
+    return std::make_unique<PoseScratch>(topology);
+  }
+  void give_back(std::unique_ptr<PoseScratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(scratch));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<PoseScratch>> free_;
+};
+
+}  // namespace
 
 struct BatchRenderer::Impl {
   Impl(std::shared_ptr<const BodyModel> the_body, PinholeCamera the_camera)
@@ -23,8 +59,8 @@ struct BatchRenderer::Impl {
           poses.num_dofs, body->skeleton.num_dofs());
     constexpr size_t kGrain = 32;
     parallel_for(poses.num_poses, kGrain, [&](size_t begin, size_t end) {
-      ProjectedSkin::Scratch projected;
-      OutlineScan outline(topology);
+      std::unique_ptr<PoseScratch> scratch = pool.take(topology);
+      auto& [projected, outline] = *scratch;
       for (size_t n = begin; n < end; ++n) {
         out[n] = {};
         if (!skin.project({poses.data + n * poses.stride, poses.num_dofs}, projected)) continue;
@@ -33,6 +69,7 @@ struct BatchRenderer::Impl {
         scan(*window, projected, outline);
         out[n] = outline.count(observed);
       }
+      pool.give_back(std::move(scratch));
     });
   }
 
@@ -53,6 +90,7 @@ struct BatchRenderer::Impl {
   PinholeCamera camera;
   ProjectedSkin skin;
   EdgeTopology topology;
+  mutable ScratchPool pool;
 };
 
 BatchRenderer::BatchRenderer(std::shared_ptr<const BodyModel> body, PinholeCamera camera) {

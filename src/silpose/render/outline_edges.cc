@@ -1,5 +1,6 @@
 #include "silpose/render/outline_edges.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "silpose/base/check.h"
@@ -113,14 +114,19 @@ size_t find_inner_edges(const StripView& strips, const GridPoint* HWY_RESTRICT p
     } while (count < end);
     count = end;
   }
+  size_t num_pairs = 0;
   for (size_t i = 0; i < strips.num_pairs; ++i) {
-    const StripOrder::Pair& pair = strips.pairs[i];
-    const uint32_t first = winding[pair.first / 8] >> (pair.first % 8) & 1;
-    const uint32_t other = winding[pair.other / 8] >> (pair.other % 8) & 1;
-    const GridPoint* const start = point + pair.first;
-    from[count] = start[StripOrder::kSide[pair.side][first]];
-    to[count] = start[StripOrder::kSide[pair.side][first ^ 1]];
-    count += (first ^ other ^ pair.expected);
+    const StripOrder::Pair pair = strips.pairs[i];
+    const uint32_t first = pair.first(), other = pair.other();
+    const uint32_t first_winding = winding[first / 8] >> (first % 8) & 1;
+    const uint32_t other_winding = winding[other / 8] >> (other % 8);
+    found[num_pairs] = uint64_t{pair.first_and_side} << 1 | first_winding;
+    num_pairs += (first_winding ^ other_winding ^ pair.other_and_expected) & 1;
+  }
+  for (size_t i = 0; i < num_pairs; ++i) {
+    const uint64_t turned = found[i] & 1, side = found[i] >> 1 & 3, first = found[i] >> 3;
+    from[count] = point[first + StripOrder::kSide[side][turned]];
+    to[count++] = point[first + StripOrder::kSide[side][turned ^ 1]];
   }
   return count;
 }
@@ -156,7 +162,7 @@ OutlineEdges::OutlineEdges(const EdgeTopology& topology) : topology_(&topology) 
   const StripOrder& strips = topology.strips;
   strip_points_.resize(strips.vertex.size());
   winding_.resize(strips.vertex.size() / 8 + kSpare);
-  found_.resize(3 * (strips.runs.size() + 1));
+  found_.resize(std::max(3 * (strips.runs.size() + 1), strips.pairs.size() + 1));
   inner_.from.resize(strips.num_inner_edges + kSpare);
   inner_.to.resize(strips.num_inner_edges + kSpare);
   border_.from.resize(topology.edges.faces.size() + kSpare);

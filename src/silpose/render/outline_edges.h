@@ -36,7 +36,7 @@ class OutlineEdges {
   const EdgeTopology* topology_;
   std::vector<GridPoint> strip_points_;  // [positions + padding]
   std::vector<uint8_t> winding_;         // [positions / 8 + padding] bits: the strip order winds anticlockwise
-  std::vector<uint64_t> found_;          // [runs, 3] scratch
+  std::vector<uint64_t> found_;          // [3 x runs or pairs] scratch
   std::vector<int8_t> facing_;           // [F + 1] only where something is unseen
   Edges inner_, border_;
 };

@@ -166,7 +166,7 @@ StripOrder::StripOrder(std::span<const Face> faces, Neighbours neighbour) {
   }
   num_inner_edges = inner.size();
   std::ranges::sort(inner, {}, [](const InnerEdge& e) { return std::tuple(e.distance(), e.side, e.first); });
-  constexpr size_t kFewest = 3;  // a run costs as much as this many pairs
+  constexpr size_t kFewest = 2;  // a run costs as much as this many pairs
   for (size_t begin = 0, end = 0; begin < inner.size(); begin = end) {
     const InnerEdge& head = inner[begin];
     Run run{.first = head.first & ~7u, .side = head.side};
@@ -182,7 +182,7 @@ StripOrder::StripOrder(std::span<const Face> faces, Neighbours neighbour) {
       runs.push_back(run);
     } else {
       for (size_t i = begin; i < end; ++i) {
-        pairs.push_back({inner[i].first, inner[i].other, inner[i].side, inner[i].expected});
+        pairs.push_back({inner[i].first << 2 | inner[i].side, inner[i].other << 1 | inner[i].expected});
       }
     }
   }

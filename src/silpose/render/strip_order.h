@@ -40,8 +40,9 @@ struct StripOrder {
 
   // Edges that are in no run.
   struct Pair {
-    uint32_t first = 0, other = 0;
-    uint32_t side = 0, expected = 0;
+    uint32_t first_and_side = 0, other_and_expected = 0;  // position << 2 | side, position << 1 | expected
+    [[nodiscard]] uint32_t first() const { return first_and_side >> 2; }
+    [[nodiscard]] uint32_t other() const { return other_and_expected >> 1; }
   };
   std::vector<Pair> pairs;
 
