@@ -50,10 +50,11 @@ struct BatchRenderer::Impl {
   Impl(std::shared_ptr<const BodyModel> the_body, PinholeCamera the_camera)
       : body(std::move(the_body)), camera(std::move(the_camera)), skin(*body, camera), topology(skin.faces()) {}
 
-  // choose_window(projected, outline) tells the window a projected pose is drawn into, or nothing when it is not seen.
-  template <class ChooseWindow>
+  // project(pose, projected, outline) leaves a pose's points on the grid of the window that it returns, or nothing when
+  // it is not seen.
+  template <class Project>
   void counts(const BatchView& poses, const Mask& observed, std::span<OutlineRenderer::Counts> out,
-              const ChooseWindow& choose_window) const {
+              const Project& project) const {
     check(out.size() == poses.num_poses, "BatchRenderer: {} poses, room for {}", poses.num_poses, out.size());
     check(poses.num_dofs == static_cast<size_t>(body->skeleton.num_dofs()), "BatchRenderer: poses of {} DOF for {}",
           poses.num_dofs, body->skeleton.num_dofs());
@@ -63,26 +64,22 @@ struct BatchRenderer::Impl {
       auto& [projected, outline] = *scratch;
       for (size_t n = begin; n < end; ++n) {
         out[n] = {};
-        if (!skin.project({poses.data + n * poses.stride, poses.num_dofs}, projected)) continue;
-        const std::optional<Window> window = choose_window(projected, outline);
-        if (!window) continue;
-        scan(*window, projected, outline);
-        out[n] = outline.count(observed);
+        const std::span pose(poses.data + n * poses.stride, poses.num_dofs);
+        if (const std::optional<Window> window = project(pose, projected, outline)) {
+          outline.scan(projected.points, projected.some_unseen, window->width, window->height);
+          out[n] = outline.count(observed);
+        }
       }
       pool.give_back(std::move(scratch));
     });
-  }
-
-  void scan(const Window& window, ProjectedSkin::Scratch& projected, OutlineScan& outline) const {
-    skin.round(window, projected);
-    outline.scan(projected.points, projected.some_unseen, window.width, window.height);
   }
 
   // Bounds of the part inside the picture. Only a body cut by the picture's border needs drawing for it.
   std::optional<PixelBounds> bounds_in_picture(ProjectedSkin::Scratch& projected, OutlineScan& outline) const {
     const PixelBounds& bounds = projected.bounds;
     if (bounds.x0 >= 0 && bounds.y0 >= 0 && bounds.x1 <= camera.width && bounds.y1 <= camera.height) return bounds;
-    scan({.width = camera.width, .height = camera.height}, projected, outline);
+    skin.round({.width = camera.width, .height = camera.height}, projected);
+    outline.scan(projected.points, projected.some_unseen, camera.width, camera.height);
     return outline.bounds();
   }
 
@@ -103,15 +100,21 @@ void BatchRenderer::counts(const BatchView& poses, const Window& window, const M
   check(observed.width() == window.width && observed.height() == window.height,
         "BatchRenderer: mask of {}x{} for a window of {}x{}", observed.width(), observed.height(), window.width,
         window.height);
-  impl_->counts(poses, observed, out, [&](auto&, auto&) { return window; });
+  impl_->counts(poses, observed, out, [&](auto pose, auto& projected, auto&) -> std::optional<Window> {
+    if (!impl_->skin.project_to_grid(pose, window, projected)) return std::nullopt;
+    return window;
+  });
 }
 
 void BatchRenderer::counts_cropped(const BatchView& poses, const Mask& observed_cropped,
                                    std::span<OutlineRenderer::Counts> out) const {
-  impl_->counts(poses, observed_cropped, out, [&](auto& projected, auto& outline) -> std::optional<Window> {
+  impl_->counts(poses, observed_cropped, out, [&](auto pose, auto& projected, auto& outline) -> std::optional<Window> {
+    if (!impl_->skin.project(pose, projected)) return std::nullopt;
     const auto bounds = impl_->bounds_in_picture(projected, outline);
     if (!bounds) return std::nullopt;
-    return window_of(*bounds, observed_cropped.width(), observed_cropped.height());
+    const Window window = window_of(*bounds, observed_cropped.width(), observed_cropped.height());
+    impl_->skin.round(window, projected);
+    return window;
   });
 }
 

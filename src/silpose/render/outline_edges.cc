@@ -38,15 +38,12 @@ namespace silpose {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void gather_strips(const GridPoint* HWY_RESTRICT points, const uint32_t* HWY_RESTRICT vertex, size_t count,
-                   GridPoint* HWY_RESTRICT strip_points) {
-  for (size_t i = 0; i < count; ++i) strip_points[i] = points[vertex[i]];
-}
-
-// One bit a position: whether the strip order of its triangle winds anticlockwise on the screen.
-void find_winding(const GridPoint* HWY_RESTRICT point, size_t num_positions, uint8_t* HWY_RESTRICT winding) {
+// Triangles [begin, end) of the strips, both multiples of 8, one bit each: whether the strip order winds anticlockwise
+// on the screen.
+HWY_INLINE void find_winding(const GridPoint* HWY_RESTRICT point, size_t begin, size_t end,
+                             uint8_t* HWY_RESTRICT winding) {
 #if HWY_TARGET == HWY_SCALAR
-  for (size_t p = 0; p < num_positions; p += 8) {
+  for (size_t p = begin; p < end; p += 8) {
     uint32_t bits = 0;
     for (size_t i = 0; i < 8; ++i) {
       const GridPoint a = point[p + i], b = point[p + i + 1], c = point[p + i + 2];
@@ -60,7 +57,7 @@ void find_winding(const GridPoint* HWY_RESTRICT point, size_t num_positions, uin
   const hn::Repartition<int32_t, decltype(d64)> d32;
   constexpr size_t kLanes = hn::MaxLanes(hn::CappedTag<int64_t, 8>());
   const int32_t* const xy = &point->x;
-  for (size_t p = 0; p < num_positions; p += 8) {
+  for (size_t p = begin; p < end; p += 8) {
     uint32_t bits = 0;
     for (size_t i = 0; i < 8; i += kLanes) {
       const auto a = hn::LoadU(d32, xy + 2 * (p + i));
@@ -75,6 +72,18 @@ void find_winding(const GridPoint* HWY_RESTRICT point, size_t num_positions, uin
     winding[p / 8] = static_cast<uint8_t>(bits);
   }
 #endif
+}
+
+// Copies the points into strip order, and finds the winding of what was just copied, while it is near.
+void lay_strips(const GridPoint* HWY_RESTRICT points, const uint32_t* HWY_RESTRICT vertex, size_t num_positions,
+                GridPoint* HWY_RESTRICT strip_points, uint8_t* HWY_RESTRICT winding) {
+  constexpr size_t kBlock = 512, kAhead = StripOrder::kPadding;  // a vector of triangles needs two vertices beyond it
+  size_t copied = 0;
+  for (size_t begin = 0; begin < num_positions; begin += kBlock) {
+    const size_t end = HWY_MIN(begin + kBlock, num_positions);
+    for (; copied < end + kAhead; ++copied) strip_points[copied] = points[vertex[copied]];
+    find_winding(strip_points, begin, end, winding);
+  }
 }
 
 // The edges between two faces that are turned to different sides. Returns how many; from and to have room for 3 more.
@@ -139,8 +148,7 @@ HWY_AFTER_NAMESPACE();
 namespace silpose {
 namespace {
 
-HWY_EXPORT(gather_strips);
-HWY_EXPORT(find_winding);
+HWY_EXPORT(lay_strips);
 HWY_EXPORT(find_inner_edges);
 
 // 1 for triangles that wind clockwise on the screen or have no area, -1 for the others.
@@ -179,9 +187,8 @@ void OutlineEdges::find(std::span<const GridPoint> points, bool some_unseen) {
     return;
   }
   const StripOrder& strips = topology_->strips;
-  HWY_DYNAMIC_DISPATCH(gather_strips)
-  (points.data(), strips.vertex.data(), strips.vertex.size(), strip_points_.data());
-  HWY_DYNAMIC_DISPATCH(find_winding)(strip_points_.data(), strips.num_positions, winding_.data());
+  HWY_DYNAMIC_DISPATCH(lay_strips)
+  (points.data(), strips.vertex.data(), strips.num_positions, strip_points_.data(), winding_.data());
   const StripView view{.runs = strips.runs.data(),
                        .num_runs = strips.runs.size(),
                        .pairs = strips.pairs.data(),

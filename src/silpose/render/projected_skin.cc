@@ -14,6 +14,10 @@ std::span<const uint16_t> joints_of(const SkinWeights& skin, size_t vertex) {
   return std::span(skin.joint_idx).subspan(skin.row_start[vertex], skin.row_start[vertex + 1] - skin.row_start[vertex]);
 }
 
+bool is_finite(std::span<const double> pose) {
+  return std::ranges::all_of(pose, [](double value) { return std::isfinite(value); });
+}
+
 }  // namespace
 
 ProjectedSkin::ProjectedSkin(const BodyModel& body, const PinholeCamera& camera) : body_(&body), camera_(&camera) {
@@ -79,15 +83,37 @@ void ProjectedSkin::set_matrices(std::span<const double> pose, Scratch& scratch)
   }
 }
 
+SkinView ProjectedSkin::view(const Scratch& scratch) const {
+  return {.chunks = chunks_.data(),
+          .num_chunks = chunks_.size(),
+          .entries = entries_.data(),
+          .entry_joint = entry_joint_.data(),
+          .matrices = scratch.matrices.data()};
+}
+
+bool ProjectedSkin::project_to_grid(std::span<const double> pose, const Window& window, Scratch& scratch) const {
+  if (!camera_->has_distortion() && is_finite(pose)) {
+    set_matrices(pose, scratch);
+    scratch.points.resize(num_slots());
+    scratch.some_unseen = false;
+    if (skin_and_round(view(scratch), GridAxis(window.x0, window.scale_x), GridAxis(window.y0, window.scale_y),
+                       scratch.points.data())) {
+      return true;
+    }
+  }
+  if (!project(pose, scratch)) return false;
+  round(window, scratch);
+  return true;
+}
+
 bool ProjectedSkin::project(std::span<const double> pose, Scratch& scratch) const {
-  if (!std::ranges::all_of(pose, [](double value) { return std::isfinite(value); })) return false;
+  if (!is_finite(pose)) return false;
   set_matrices(pose, scratch);
   const size_t num_chunks = chunks_.size();
   scratch.x.resize(num_chunks);
   scratch.y.resize(num_chunks);
   scratch.depth.resize(num_chunks);
-  skin_and_project(chunks_.data(), num_chunks, entries_.data(), entry_joint_.data(), scratch.matrices.data(),
-                   scratch.x.data(), scratch.y.data(), scratch.depth.data());
+  skin_and_project(view(scratch), scratch.x.data(), scratch.y.data(), scratch.depth.data());
   if (camera_->has_distortion()) {
     LensFloats lens{.fx = static_cast<float>(camera_->fx),
                     .fy = static_cast<float>(camera_->fy),

@@ -40,6 +40,9 @@ class ProjectedSkin {
   // Projects a pose [D]. False when nothing is seen, or when the pose has a number that is not finite.
   bool project(std::span<const double> pose, Scratch& scratch) const;
 
+  // The same for a window that is known beforehand: only scratch.points is left, as round() makes them.
+  bool project_to_grid(std::span<const double> pose, const Window& window, Scratch& scratch) const;
+
   // Rounds the pixels to a window's grid, into scratch.points.
   void round(const Window& window, Scratch& scratch) const;
 
@@ -48,6 +51,7 @@ class ProjectedSkin {
 
  private:
   void set_matrices(std::span<const double> pose, Scratch& scratch) const;
+  [[nodiscard]] SkinView view(const Scratch& scratch) const;
   bool leave_out_unseen(Scratch& scratch) const;
 
   const BodyModel* body_;

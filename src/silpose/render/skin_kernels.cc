@@ -16,20 +16,21 @@ using Floats = hn::CappedTag<float, kChunkLanes>;
 constexpr Floats kFloats;
 constexpr size_t kStep = hn::MaxLanes(Floats());
 
-void skin_and_project(const SkinChunk* HWY_RESTRICT chunks, size_t num_chunks, const SkinEntry* HWY_RESTRICT entries,
-                      const uint32_t* HWY_RESTRICT entry_joint, const float* HWY_RESTRICT matrices,
-                      ChunkFloats* HWY_RESTRICT out_x, ChunkFloats* HWY_RESTRICT out_y,
-                      ChunkFloats* HWY_RESTRICT out_depth) {
+using FloatsV = hn::Vec<Floats>;
+
+// Calls store(chunk, lane, x, y, depth) with the pixels of kStep vertices at a time.
+template <class Store>
+HWY_INLINE void for_each_projected(const SkinView& skin, const Store& store) {
   const auto one = hn::Set(kFloats, 1.0f);
-  for (size_t c = 0; c < num_chunks; ++c) {
+  for (size_t c = 0; c < skin.num_chunks; ++c) {
     for (size_t lane = 0; lane < kChunkLanes; lane += kStep) {
       auto x = hn::Zero(kFloats), y = x, z = x;
-      for (uint32_t e = chunks[c].begin; e < chunks[c].end; ++e) {
-        const float* const m = matrices + size_t{12} * entry_joint[e];
-        const SkinEntry& entry = entries[e];
+      for (uint32_t e = skin.chunks[c].begin; e < skin.chunks[c].end; ++e) {
+        const float* const m = skin.matrices + size_t{12} * skin.entry_joint[e];
+        const SkinEntry& entry = skin.entries[e];
         const auto ex = hn::Load(kFloats, entry.x.lane + lane), ey = hn::Load(kFloats, entry.y.lane + lane);
         const auto ez = hn::Load(kFloats, entry.z.lane + lane), ew = hn::Load(kFloats, entry.w.lane + lane);
-        const auto add_row = [&](const float* row, auto sum) HWY_ATTR {
+        const auto add_row = [&](const float* row, FloatsV sum) HWY_ATTR {
           const auto near_part = hn::MulAdd(hn::Set(kFloats, row[1]), ey, hn::Mul(hn::Set(kFloats, row[0]), ex));
           const auto far_part = hn::MulAdd(hn::Set(kFloats, row[2]), ez, hn::Mul(hn::Set(kFloats, row[3]), ew));
           return hn::Add(sum, hn::Add(near_part, far_part));
@@ -39,11 +40,42 @@ void skin_and_project(const SkinChunk* HWY_RESTRICT chunks, size_t num_chunks, c
         z = add_row(m + 8, z);
       }
       const auto inverse_depth = hn::Div(one, z);
-      hn::Store(hn::Mul(x, inverse_depth), kFloats, out_x[c].lane + lane);
-      hn::Store(hn::Mul(y, inverse_depth), kFloats, out_y[c].lane + lane);
-      hn::Store(z, kFloats, out_depth[c].lane + lane);
+      store(c, lane, hn::Mul(x, inverse_depth), hn::Mul(y, inverse_depth), z);
     }
   }
+}
+
+HWY_INLINE hn::VFromD<hn::RebindToSigned<Floats>> round_axis(const GridAxis& axis, FloatsV pixel) {
+  const hn::RebindToSigned<Floats> d32;
+  constexpr auto kLimit = static_cast<float>(kGridLimit);
+  const auto lowest = hn::Set(kFloats, -kLimit), highest = hn::Set(kFloats, kLimit);
+  auto grid = hn::Add(hn::Mul(pixel, hn::Set(kFloats, axis.slope)), hn::Set(kFloats, axis.offset));
+  grid = hn::IfThenElse(hn::Gt(grid, lowest), grid, lowest);
+  grid = hn::IfThenElse(hn::Lt(grid, highest), grid, highest);
+  const auto whole = hn::ConvertTo(d32, grid);
+  const auto rest = hn::Sub(grid, hn::ConvertTo(kFloats, whole));
+  return hn::Add(whole, hn::ConvertTo(d32, hn::Add(rest, rest)));
+}
+
+void skin_and_project(const SkinView& skin, ChunkFloats* HWY_RESTRICT out_x, ChunkFloats* HWY_RESTRICT out_y,
+                      ChunkFloats* HWY_RESTRICT out_depth) {
+  for_each_projected(skin, [&](size_t c, size_t lane, FloatsV x, FloatsV y, FloatsV depth) HWY_ATTR {
+    hn::Store(x, kFloats, out_x[c].lane + lane);
+    hn::Store(y, kFloats, out_y[c].lane + lane);
+    hn::Store(depth, kFloats, out_depth[c].lane + lane);
+  });
+}
+
+bool skin_and_round(const SkinView& skin, const GridAxis& x_axis, const GridAxis& y_axis,
+                    GridPoint* HWY_RESTRICT points) {
+  const hn::RebindToSigned<Floats> d32;
+  const auto nearest_seen = hn::Set(kFloats, static_cast<float>(PinholeCamera::kNear));
+  auto all_seen = hn::FirstN(kFloats, kStep);
+  for_each_projected(skin, [&](size_t c, size_t lane, FloatsV x, FloatsV y, FloatsV depth) HWY_ATTR {
+    all_seen = hn::And(all_seen, hn::Ge(depth, nearest_seen));
+    hn::StoreInterleaved2(round_axis(x_axis, x), round_axis(y_axis, y), d32, &points[c * kChunkLanes + lane].x);
+  });
+  return hn::AllTrue(kFloats, all_seen);
 }
 
 void distort_points(const LensFloats& lens, size_t num_chunks, ChunkFloats* HWY_RESTRICT inout_x,
@@ -88,20 +120,10 @@ ProjectionBounds bounds_of_points(size_t num_chunks, const ChunkFloats* HWY_REST
 void round_points(const GridAxis& x_axis, const GridAxis& y_axis, size_t num_chunks, const ChunkFloats* HWY_RESTRICT x,
                   const ChunkFloats* HWY_RESTRICT y, GridPoint* HWY_RESTRICT points) {
   const hn::RebindToSigned<Floats> d32;
-  constexpr auto kLimit = static_cast<float>(kGridLimit);
-  const auto lowest = hn::Set(kFloats, -kLimit), highest = hn::Set(kFloats, kLimit);
-  const auto round = [&](const GridAxis& axis, const float* pixel) HWY_ATTR {
-    const auto slope = hn::Set(kFloats, axis.slope), offset = hn::Set(kFloats, axis.offset);
-    auto grid = hn::Add(hn::Mul(hn::Load(kFloats, pixel), slope), offset);
-    grid = hn::IfThenElse(hn::Gt(grid, lowest), grid, lowest);
-    grid = hn::IfThenElse(hn::Lt(grid, highest), grid, highest);
-    const auto whole = hn::ConvertTo(d32, grid);
-    const auto rest = hn::Sub(grid, hn::ConvertTo(kFloats, whole));
-    return hn::Add(whole, hn::ConvertTo(d32, hn::Add(rest, rest)));
-  };
   for (size_t c = 0; c < num_chunks; ++c) {
     for (size_t lane = 0; lane < kChunkLanes; lane += kStep) {
-      hn::StoreInterleaved2(round(x_axis, x[c].lane + lane), round(y_axis, y[c].lane + lane), d32,
+      hn::StoreInterleaved2(round_axis(x_axis, hn::Load(kFloats, x[c].lane + lane)),
+                            round_axis(y_axis, hn::Load(kFloats, y[c].lane + lane)), d32,
                             &points[c * kChunkLanes + lane].x);
     }
   }
@@ -116,15 +138,19 @@ namespace silpose {
 namespace {
 
 HWY_EXPORT(skin_and_project);
+HWY_EXPORT(skin_and_round);
 HWY_EXPORT(distort_points);
 HWY_EXPORT(bounds_of_points);
 HWY_EXPORT(round_points);
 
 }  // namespace
 
-void skin_and_project(const SkinChunk* chunks, size_t num_chunks, const SkinEntry* entries, const uint32_t* entry_joint,
-                      const float* matrices, ChunkFloats* x, ChunkFloats* y, ChunkFloats* depth) {
-  HWY_DYNAMIC_DISPATCH(skin_and_project)(chunks, num_chunks, entries, entry_joint, matrices, x, y, depth);
+void skin_and_project(const SkinView& skin, ChunkFloats* x, ChunkFloats* y, ChunkFloats* depth) {
+  HWY_DYNAMIC_DISPATCH(skin_and_project)(skin, x, y, depth);
+}
+
+bool skin_and_round(const SkinView& skin, const GridAxis& x_axis, const GridAxis& y_axis, GridPoint* points) {
+  return HWY_DYNAMIC_DISPATCH(skin_and_round)(skin, x_axis, y_axis, points);
 }
 
 void distort_points(const LensFloats& lens, size_t num_chunks, ChunkFloats* x, ChunkFloats* y) {

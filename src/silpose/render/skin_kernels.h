@@ -29,9 +29,22 @@ struct ProjectionBounds {
   bool all_seen = false;  // nothing is nearer than PinholeCamera::kNear; else the rest means nothing
 };
 
-// Homogeneous pixels of all vertices, divided by their depth. `matrices` [J, 3, 4] row by row, `entry_joint` [entries].
-void skin_and_project(const SkinChunk* chunks, size_t num_chunks, const SkinEntry* entries, const uint32_t* entry_joint,
-                      const float* matrices, ChunkFloats* x, ChunkFloats* y, ChunkFloats* depth);
+// A skin and the pose it takes.
+struct SkinView {
+  const SkinChunk* chunks;
+  size_t num_chunks;
+  const SkinEntry* entries;
+  const uint32_t* entry_joint;  // [entries]
+  const float* matrices;        // [J, 3, 4] row by row, to homogeneous pixels
+};
+
+// Pixels of all vertices, and their depth.
+void skin_and_project(const SkinView& skin, ChunkFloats* x, ChunkFloats* y, ChunkFloats* depth);
+
+// The same at once as points of a grid, as round_points(). False when a vertex is nearer than PinholeCamera::kNear:
+// then the points mean nothing.
+[[nodiscard]] bool skin_and_round(const SkinView& skin, const GridAxis& x_axis, const GridAxis& y_axis,
+                                  GridPoint* points);
 
 // Points of the plane z = 1 to pixels through a lens: fx, fy, cx, cy, then OpenCV's k1 k2 p1 p2 k3.
 struct LensFloats {
