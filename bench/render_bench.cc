@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "agreement.h"
 #include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
 #include "silpose/body/body_model.h"
@@ -125,7 +126,13 @@ Figure xor_us(int size) {
 
 }  // namespace
 
-Figure likelihood_full() { return likelihood(human(), 1000); }
+Figure likelihood_full() {
+  const Agreement agreement = measure_agreement(human(), 1000);
+  verify(agreement.from_pixels == 0, "pixels differ from the same projected vertices");
+  verify(100'000 * agreement.from_poses <= agreement.pixels,
+         "more than a pixel in 100,000 differs from the same poses");
+  return likelihood(human(), 1000);
+}
 Figure likelihood_lod() { return likelihood(std::make_shared<BodyModel>(level_of_detail(*human(), 2000)), 4000); }
 Figure xor_128_us() { return xor_us(128); }
 Figure xor_256_us() { return xor_us(256); }

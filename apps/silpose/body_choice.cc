@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <system_error>
 
+#include "apps/silpose/body_levels.h"
 #include "apps/silpose/command.h"
 #include "apps/silpose/result_directory.h"
 #include "silpose/body/human.h"
@@ -92,6 +93,7 @@ Result<BodyModel> build_body(const std::string& model, Console& console) {
   if (!data) return data.failure();
   Result<BodyModel> body = build_human(*data, *phenotype);
   if (!body) return error("--model {}: {}", model, body.error().message);
+  add_levels(*body, console);
   return body;
 }
 

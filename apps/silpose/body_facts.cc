@@ -20,6 +20,15 @@ nlohmann::ordered_json facts_of(const BodyModel& body) {
   json["height_m"] = body.height_m;
   json["weight_kg"] = body.weight_kg;
   json["facts"] = body.facts;
+  nlohmann::ordered_json levels = nlohmann::json::array();
+  for (const BodyLevel& level : body.levels) {
+    levels.push_back({{"asked_vertices", level.asked_vertices},
+                      {"vertices", level.vertices.size()},
+                      {"faces", level.faces.size()},
+                      {"mean_iou", level.mean_iou},
+                      {"worst_iou", level.worst_iou}});
+  }
+  json["levels"] = levels;
   return json;
 }
 

@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/body_facts.h"
+#include "apps/silpose/body_levels.h"
 #include "apps/silpose/command.h"
 #include "apps/silpose/model_fit.h"
 #include "silpose/geometry/rigid3.h"
@@ -40,6 +42,11 @@ Result<Outcome> inspect_model(const std::string& model, Console& console) {
   outcome.json = facts_of(**body);
   outcome.text = summary_of(**body);
   for (const auto& [key, value] : (*body)->facts) outcome.text += fmt::format("\n  {}: {}", key, value);
+  for (const BodyLevel& level : (*body)->levels) {
+    outcome.text +=
+        fmt::format("\n  level of {} vertices, {} faces: silhouettes share {:.4f} with the whole's, {:.4f} at least",
+                    level.vertices.size(), level.faces.size(), level.mean_iou, level.worst_iou);
+  }
   nlohmann::ordered_json dofs = nlohmann::json::array();
   for (const Dof& dof : (*body)->skeleton.dofs()) {
     const double lower = dof.is_translation ? dof.lower : to_degrees(dof.lower);
@@ -61,7 +68,8 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
   struct Options {
     std::string model = "human", out;
     bool if_older = false;
-    int vertices = 2000;
+    std::optional<int> vertices;
+    std::optional<double> iou;
   };
   const auto options = std::make_shared<Options>();
   CLI::App* const model = program.add_subcommand("model", "Body models");
@@ -77,12 +85,16 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
   inspect->add_option("MODEL,--model", options->model, "As --model elsewhere")
       ->capture_default_str()
       ->check(is_model());
-  CLI::App* const lod = model->add_subcommand("lod", "The same body with fewer vertices");
+  CLI::App* const lod =
+      model->add_subcommand("lod", "The same body with its levels of detail, or one of them as a body");
   add_model_option(*lod, options->model);
   add_body_file_option(*lod, options->out);
-  lod->add_option("--vertices", options->vertices, "About how many")
-      ->capture_default_str()
-      ->check(CLI::Range(100, 20000));
+  CLI::Option* const vertices = lod->add_option("--vertices", options->vertices, "Only the level of about as many")
+                                    ->check(CLI::Range(100, 20000));
+  lod->add_option("--iou", options->iou,
+                  "Only the coarsest level whose silhouettes share this much with the whole body's, on average")
+      ->check(CLI::Range(0.0, 1.0))
+      ->excludes(vertices);
 
   return {
       {list, [](Console&) { return list_models(); }},
@@ -101,7 +113,13 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
        [options](Console& console) -> Result<Outcome> {
          const auto body = choose_body(options->model, console);
          if (!body) return body.failure();
-         return write_model(level_of_detail(**body, options->vertices), options->out);
+         if (options->vertices) return write_model(level_of_detail(**body, *options->vertices), options->out);
+         BodyModel with_levels = **body;
+         if (!options->iou || with_levels.levels.empty()) add_levels(with_levels, console);
+         if (!options->iou) return write_model(with_levels, options->out);
+         const Result<const BodyLevel*> level = choose_level(with_levels, *options->iou);
+         if (!level) return level.failure();
+         return write_model(body_of_level(with_levels, **level), options->out);
        }},
       add_model_fit(*model, common),
   };

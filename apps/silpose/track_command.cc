@@ -38,7 +38,9 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
     const Result<void> estimated = estimate_camera_of(*source, (*body)->height_m, *cameras, console);
     if (!estimated) return estimated.failure();
   }
-  TrackerOptions tracker = tracker_options(options, *body, cameras->cameras, common.seed);
+  Result<TrackerOptions> asked = tracker_options(options, *body, cameras->cameras, common.seed);
+  if (!asked) return asked.failure();
+  TrackerOptions tracker = std::move(*asked);
   TrackResume resume{
       .folder = directory->path(),
       .made_with = made_with(option_lines(app, chosen_options(options, tracker.resolved())), cameras->cameras, **body),

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/silpose/body_choice.h"
+#include "apps/silpose/body_levels.h"
 #include "apps/silpose/command.h"
 #include "silpose/exchange/tables.h"
 
@@ -96,6 +97,11 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
                  "before the smoothing "
                  "take 2500)")
       ->check(CLI::Range(0, 1'000'000));
+  app.add_option("--iou", options.level_iou,
+                 "Compare the coarsest of the body's levels of detail whose silhouettes share this much with the whole "
+                 "body's, on average, in place of --vertices")
+      ->check(CLI::Range(0.0, 1.0))
+      ->excludes("--vertices");
   app.add_option("--init", options.init,
                  "First pose: descent; landmarks (the same, and it agrees with those that --segmenter learned finds); "
                  "auto (landmarks where some are found); or a poses.csv (its row of the first frame)")
@@ -153,9 +159,14 @@ bool estimates_camera(const TrackOptions& options) {
          !options.input.videos[0].starts_with("camera:");
 }
 
-TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
-                               std::vector<PinholeCamera> cameras, uint64_t seed) {
+Result<TrackerOptions> tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
+                                       std::vector<PinholeCamera> cameras, uint64_t seed) {
   TrackerOptions tracker = options.tracker;
+  if (options.level_iou) {
+    const Result<const BodyLevel*> level = choose_level(*body, *options.level_iou);
+    if (!level) return level.failure();
+    tracker.lod_vertices = (*level)->asked_vertices;
+  }
   tracker.body = std::move(body);
   tracker.cameras = std::move(cameras);
   tracker.seed = seed;

@@ -22,7 +22,7 @@ struct TrackOptions {
   CameraOptions camera;
   std::string model = "human", out, config, init = "auto", root = "tracked";
   std::optional<std::string> metric, estimate;
-  std::optional<double> resample_below;
+  std::optional<double> resample_below, level_iou;
   std::optional<bool> fit_body;
   bool each = false, resume = false, draw_floor = false;
   TrackerOptions tracker;
@@ -39,8 +39,9 @@ bool fits_body(const TrackOptions& options);
 // Whether the camera is estimated: of one recorded clip without a calibration file.
 bool estimates_camera(const TrackOptions& options);
 
-// What the tracker is asked for, all but its first pose. Throws UsageError for what it refuses.
-TrackerOptions tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
+// What the tracker is asked for, all but its first pose. Throws UsageError for what it refuses. Errors: no level of the
+// body's is as fine as --iou asks for.
+Result<TrackerOptions> tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
                                std::vector<PinholeCamera> cameras, uint64_t seed);
 
 // The pose that --init names, of a frame of the clip, or the file's first where it does not have that frame. [D]

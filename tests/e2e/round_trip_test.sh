@@ -87,5 +87,14 @@ done
 "$silpose" model lod --vertices 1500 --out small.body --quiet
 "$silpose" model inspect small.body --json >small.json
 [[ $(number small.json closed) == True && $(number small.json dofs) == 37 ]] || fail "the coarse body is not whole"
+"$silpose" model lod --out levels.body --quiet
+"$silpose" model lod --model levels.body --iou 0.975 --out chosen.body --quiet
+"$silpose" model inspect chosen.body --json >chosen.json
+chosen=$(number chosen.json vertices)
+((chosen > 500 && chosen < 2500)) || fail "$chosen vertices for an overlap of 0.975"
+"$silpose" "${track[@]}" --model levels.body --iou 0.975 --out by_iou --json >by_iou.json || fail "track --iou"
+grep -q -x 'vertices = 1250' by_iou/config.toml || fail "config.toml does not say which level --iou took"
+refusal=$("$silpose" model lod --model levels.body --iou 0.9999 --out none.body --quiet 2>&1) && fail "a level that is not there"
+grep -q 'no level of detail' <<<"$refusal" || fail "no word on the level that is not there: $refusal"
 
 finish

@@ -37,7 +37,7 @@ Result<std::string> read_checked_file(const std::filesystem::path& path, const F
   constexpr size_t kNumbers = sizeof version + sizeof expected + sizeof size;
   if (!from_bytes(bytes.substr(0, kNumbers), version, expected, size)) return error("{}: truncated", path.string());
   bytes.remove_prefix(kNumbers);
-  if (version != kind.version) {
+  if (version < kind.oldest_version || version > kind.version) {
     return error("{}: {} of version {}, not {}", path.string(), kind.name, version, kind.version);
   }
   if (bytes.size() < size) return error("{}: truncated", path.string());

@@ -15,7 +15,8 @@ namespace silpose {
 struct FileKind {
   std::string_view magic;  // 8 characters
   uint32_t version = 1;
-  std::string_view name;  // for messages: "body file"
+  std::string_view name;              // for messages: "body file"
+  uint32_t oldest_version = version;  // that can still be read
 };
 
 // The CRC-32 of zlib.

@@ -13,7 +13,9 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the .body file is copied byte by byte");
 
-constexpr FileKind kBodyFile{.magic = "SILPBODY", .version = 1, .name = "body file"};
+// Levels came with version 2; a body without any is written as version 1, which older programs read.
+constexpr FileKind kPlainBodyFile{.magic = "SILPBODY", .version = 1, .name = "body file"};
+constexpr FileKind kBodyFile{.magic = "SILPBODY", .version = 2, .name = "body file", .oldest_version = 1};
 
 class Writer {
  public:
@@ -162,6 +164,31 @@ void check_mesh(const Mesh& mesh, const SkinWeights& skin, size_t num_joints) {
   }
 }
 
+std::vector<BodyLevel> get_levels(Reader& in, size_t num_vertices) {
+  std::vector<BodyLevel> levels(in.get_count(28));
+  for (BodyLevel& level : levels) {
+    level.asked_vertices = in.get<int32_t>();
+    level.mean_iou = in.get<double>();
+    level.worst_iou = in.get<double>();
+    for (const double iou : {level.mean_iou, level.worst_iou}) {
+      if (!(iou >= 0 && iou <= 1)) throw Malformed("an overlap is not within 0 and 1");
+    }
+    level.vertices = in.get_array<uint32_t>(in.get_count(sizeof(uint32_t)));
+    level.faces = in.get_array<Face>(in.get_count(sizeof(Face)));
+    if (level.vertices.empty() || level.faces.empty()) throw Malformed("a level has no vertices or no faces");
+    for (size_t v = 0; v < level.vertices.size(); ++v) {
+      const bool ascends = v == 0 || level.vertices[v - 1] < level.vertices[v];
+      if (!ascends || level.vertices[v] >= num_vertices) throw Malformed("a level's vertices are not the body's");
+    }
+    for (const Face& face : level.faces) {
+      for (const uint32_t v : face) {
+        if (v >= level.vertices.size()) throw Malformed("a level's face uses a vertex that is not there");
+      }
+    }
+  }
+  return levels;
+}
+
 BodyModel get_body(Reader& in) {
   std::string name = in.get_text();
   Skeleton skeleton = get_skeleton(in);
@@ -181,7 +208,8 @@ BodyModel get_body(Reader& in) {
                  .end_points = {},
                  .height_m = 0,
                  .weight_kg = 0,
-                 .facts = {}};
+                 .facts = {},
+                 .levels = {}};
   body.rest.vertices = in.get_array<Eigen::Vector3f>(in.get_count(sizeof(Eigen::Vector3f)));
   body.rest.faces = in.get_array<Face>(in.get_count(sizeof(Face)));
   body.skin.row_start = in.get_array<uint32_t>(body.rest.vertices.size() + 1);
@@ -204,6 +232,7 @@ BodyModel get_body(Reader& in) {
     std::string key = in.get_text();
     body.facts[std::move(key)] = in.get_text();
   }
+  if (!in.at_end()) body.levels = get_levels(in, body.rest.vertices.size());
   if (!in.at_end()) throw Malformed("bytes are left over");
   return body;
 }
@@ -238,6 +267,17 @@ Result<void> write_body(const std::filesystem::path& path, const BodyModel& body
   for (const auto& [key, value] : body.facts) {
     out.put(key);
     out.put(value);
+  }
+  if (body.levels.empty()) return write_checked_file(path, kPlainBodyFile, out.bytes());
+  out.put_count(body.levels.size());
+  for (const BodyLevel& level : body.levels) {
+    out.put(static_cast<int32_t>(level.asked_vertices));
+    out.put(level.mean_iou);
+    out.put(level.worst_iou);
+    out.put_count(level.vertices.size());
+    out.put_array(level.vertices.data(), level.vertices.size());
+    out.put_count(level.faces.size());
+    out.put_array(level.faces.data(), level.faces.size());
   }
   return write_checked_file(path, kBodyFile, out.bytes());
 }

@@ -59,6 +59,53 @@ TEST_F(BodyFile, KeepsEverything) {
   EXPECT_EQ(landmark_positions(again, pose), landmark_positions(body, pose));
 }
 
+// Two levels of the test body: its own mesh, and one that leaves a vertex out.
+BodyModel body_with_levels() {
+  BodyModel body = make_test_body();
+  BodyLevel whole{.asked_vertices = 200, .vertices = {}, .faces = body.rest.faces, .mean_iou = 1, .worst_iou = 1};
+  for (uint32_t v = 0; v < body.rest.vertices.size(); ++v) whole.vertices.push_back(v);
+  body.levels = {
+      {.asked_vertices = 100, .vertices = {0, 1, 3}, .faces = {{0, 1, 2}}, .mean_iou = 0.5, .worst_iou = 0.25}, whole};
+  return body;
+}
+
+TEST_F(BodyFile, KeepsLevels) {
+  const BodyModel body = body_with_levels();
+  write_body(path, body).value();
+  const BodyModel again = load_body(path).value();
+  ASSERT_EQ(again.levels.size(), 2u);
+  for (size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(again.levels[i].asked_vertices, body.levels[i].asked_vertices);
+    EXPECT_EQ(again.levels[i].vertices, body.levels[i].vertices);
+    EXPECT_EQ(again.levels[i].faces, body.levels[i].faces);
+    EXPECT_EQ(again.levels[i].mean_iou, body.levels[i].mean_iou);
+    EXPECT_EQ(again.levels[i].worst_iou, body.levels[i].worst_iou);
+  }
+}
+
+TEST_F(BodyFile, WithoutLevelsIsWhatOlderProgramsRead) {
+  EXPECT_EQ(written()[8], 1);
+  write_body(path, body_with_levels()).value();
+  std::string bytes = read_text_file(path).value();
+  EXPECT_EQ(bytes[8], 2);
+  bytes[8] = 3;
+  EXPECT_THAT(failure_of(bytes), HasSubstr("version 3"));
+}
+
+TEST_F(BodyFile, RefusesLevelsOfAnotherMesh) {
+  const auto refusal = [&](const auto& change) {
+    BodyModel body = body_with_levels();
+    change(body.levels[0]);
+    write_body(path, body).value();
+    return load_body(path).error().message;
+  };
+  EXPECT_THAT(refusal([](BodyLevel& level) { level.vertices[2] = 9999; }), HasSubstr("not the body's"));
+  EXPECT_THAT(refusal([](BodyLevel& level) { level.vertices[1] = 0; }), HasSubstr("not the body's"));
+  EXPECT_THAT(refusal([](BodyLevel& level) { level.faces[0][1] = 3; }), HasSubstr("level's face"));
+  EXPECT_THAT(refusal([](BodyLevel& level) { level.mean_iou = 1.5; }), HasSubstr("overlap"));
+  EXPECT_THAT(refusal([](BodyLevel& level) { level.faces.clear(); }), HasSubstr("no faces"));
+}
+
 TEST_F(BodyFile, SaysWhatIsWrong) {
   const std::string good = written();
   EXPECT_THAT(load_body("nowhere/none.body").error().message, HasSubstr("nowhere/none.body"));
@@ -87,7 +134,8 @@ uint32_t crc32_of(const std::string& bytes) {
 }
 
 TEST_F(BodyFile, SurvivesHostileContentWithARightChecksum) {
-  const std::string good = written();
+  write_body(path, body_with_levels()).value();
+  const std::string good = read_text_file(path).value();
   Rng rng(11);
   int refused = 0;
   for (int trial = 0; trial < 300; ++trial) {
@@ -105,6 +153,7 @@ TEST_F(BodyFile, SurvivesHostileContentWithARightChecksum) {
       ++refused;
     } else {
       (void)skin_vertices(*body, std::vector<double>(body->skeleton.dofs().size()));
+      for (const BodyLevel& level : body->levels) (void)body_of_level(*body, level);
     }
   }
   EXPECT_GT(refused, 50);

@@ -27,6 +27,14 @@ struct SkinWeights {
   std::vector<float> weight;        // positive, sums to 1 for each vertex
 };
 
+// A coarser mesh of the same body: some of its vertices, joined by other faces.
+struct BodyLevel {
+  int asked_vertices = 0;           // what simplification was asked for
+  std::vector<uint32_t> vertices;   // [v] indices of the whole mesh's, ascending
+  std::vector<Face> faces;          // of these v
+  double mean_iou = 0, worst_iou = 0;  // of its silhouettes with the whole body's (render/level_accuracy.h); 0: unknown
+};
+
 struct BodyModel {
   std::string name;  // "human:age=25,sex=f,height=1.620,weight=58.0"
   Skeleton skeleton;
@@ -41,6 +49,7 @@ struct BodyModel {
   std::vector<EndPoint> end_points;          // fixed to a joint; human: head_top, {right,left}_toe_tip, _finger_tip
   double height_m = 0, weight_kg = 0;        // stature and mass of the rest mesh
   std::map<std::string, std::string> facts;  // how it was built: sliders, source data, its hash
+  std::vector<BodyLevel> levels;             // from coarse to fine; those that level_of_detail() need not make
 };
 
 // Vertices [V] of the mesh for a pose [D], world coordinates. `world_from_joint` [J] is scratch and result.
@@ -62,13 +71,23 @@ void skin_vertices(const BodyModel& body, std::span<const double> pose, std::spa
 // translation root_ty; otherwise zeros. [D]
 [[nodiscard]] std::vector<double> standing_pose(const BodyModel& body);
 
-// The same body with about `num_vertices` vertices: still closed, vertices kept where they were, outline kept (the
-// human at 2,000 vertices: 0.6 mm off on average). Stature and mass stay those of the whole mesh.
+// A level of about `num_vertices` vertices: still closed, vertices kept where they were, outline kept (the human at 2,000
+// vertices: 0.6 mm off on average).
 // Source: quadric error metric (garland1997), by meshoptimizer.
 // Errors: throws std::invalid_argument when asked for fewer than 100.
+[[nodiscard]] BodyLevel simplify(const BodyModel& body, int num_vertices);
+
+// The level as a body of its own, without further levels. Stature and mass stay those of the whole mesh.
+[[nodiscard]] BodyModel body_of_level(const BodyModel& body, const BodyLevel& level);
+
+// The body at the level that was asked for with `num_vertices`: one of its own, or else made by simplify().
+// Errors: as simplify().
 [[nodiscard]] BodyModel level_of_detail(const BodyModel& body, int num_vertices);
 
-// The same, shared; with 0 vertices the body itself.
+// The coarsest of the body's own levels whose silhouettes share, on average, at least `mean_iou` with the whole body's.
+[[nodiscard]] const BodyLevel* coarsest_level(const BodyModel& body, double mean_iou);  // null: there is none
+
+// level_of_detail() of a shared body; with 0 vertices the body itself.
 [[nodiscard]] std::shared_ptr<const BodyModel> level_of_detail(const std::shared_ptr<const BodyModel>& body,
                                                                int num_vertices);
 

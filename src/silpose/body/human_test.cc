@@ -225,6 +225,24 @@ TEST(LevelOfDetail, KeepsTheExtentOfTheOutlineInEveryDirection) {
   }
 }
 
+TEST(LevelOfDetail, IsTheBodysOwnWhereItHasIt) {
+  BodyModel body = human("human");
+  const BodyModel made = level_of_detail(body, 600);
+  body.levels = {simplify(body, 600), simplify(body, 1000)};
+  body.levels[0].mean_iou = 0.95;
+  body.levels[1].mean_iou = 0.97;
+  const BodyModel own = level_of_detail(body, 600);
+  EXPECT_EQ(own.rest.vertices, made.rest.vertices);
+  EXPECT_EQ(own.rest.faces, made.rest.faces);
+  EXPECT_EQ(own.skin.weight, made.skin.weight);
+  EXPECT_TRUE(own.levels.empty());
+  EXPECT_EQ(coarsest_level(body, 0.94), &body.levels[0]);
+  EXPECT_EQ(coarsest_level(body, 0.96), &body.levels[1]);
+  EXPECT_EQ(coarsest_level(body, 0.98), nullptr);
+  body.levels[0].faces.resize(100);  // taken as it is, not made anew
+  EXPECT_EQ(level_of_detail(body, 600).rest.faces.size(), 100u);
+}
+
 TEST(LevelOfDetail, RefusesTooFew) {
   EXPECT_THROW((void)level_of_detail(human("human"), 99), std::invalid_argument);
 }

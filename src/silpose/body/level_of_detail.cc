@@ -1,5 +1,7 @@
 #include <meshoptimizer.h>
 
+#include <algorithm>
+
 #include "silpose/base/check.h"
 #include "silpose/body/body_model.h"
 
@@ -14,8 +16,8 @@ std::vector<Face> faces_of(const std::vector<uint32_t>& indices) {
 
 }  // namespace
 
-BodyModel level_of_detail(const BodyModel& body, int num_vertices) {
-  check(num_vertices >= 100, "level_of_detail: {} vertices are too few", num_vertices);
+BodyLevel simplify(const BodyModel& body, int num_vertices) {
+  check(num_vertices >= 100, "level of detail: {} vertices are too few", num_vertices);
   const std::vector<Eigen::Vector3f>& x = body.rest.vertices;
   std::vector<uint32_t> indices;
   for (const Face& face : body.rest.faces) indices.insert(indices.end(), face.begin(), face.end());
@@ -31,25 +33,48 @@ BodyModel level_of_detail(const BodyModel& body, int num_vertices) {
     if (!closed || is_closed(faces_of(kept))) break;
     kept = indices;
   }
-  BodyModel out = body;
-  out.rest = {};
-  out.skin = {.row_start = {0}, .joint_idx = {}, .weight = {}};
+  BodyLevel level{.asked_vertices = num_vertices, .vertices = {}, .faces = {}};
   constexpr uint32_t kUnused = ~0u;
   std::vector<uint32_t> new_from_old(x.size(), kUnused);
   for (const uint32_t v : kept) new_from_old[v] = 0;
-  for (size_t v = 0; v < x.size(); ++v) {
+  for (uint32_t v = 0; v < x.size(); ++v) {
     if (new_from_old[v] == kUnused) continue;
-    new_from_old[v] = static_cast<uint32_t>(out.rest.vertices.size());
-    out.rest.vertices.push_back(x[v]);
+    new_from_old[v] = static_cast<uint32_t>(level.vertices.size());
+    level.vertices.push_back(v);
+  }
+  for (uint32_t& v : kept) v = new_from_old[v];
+  level.faces = faces_of(kept);
+  return level;
+}
+
+BodyModel body_of_level(const BodyModel& body, const BodyLevel& level) {
+  BodyModel out = body;
+  out.levels.clear();
+  out.rest = {.vertices = {}, .faces = level.faces};
+  out.skin = {.row_start = {0}, .joint_idx = {}, .weight = {}};
+  for (const uint32_t v : level.vertices) {
+    out.rest.vertices.push_back(body.rest.vertices[v]);
     for (uint32_t i = body.skin.row_start[v]; i < body.skin.row_start[v + 1]; ++i) {
       out.skin.joint_idx.push_back(body.skin.joint_idx[i]);
       out.skin.weight.push_back(body.skin.weight[i]);
     }
     out.skin.row_start.push_back(static_cast<uint32_t>(out.skin.weight.size()));
   }
-  for (uint32_t& v : kept) v = new_from_old[v];
-  out.rest.faces = faces_of(kept);
   return out;
+}
+
+BodyModel level_of_detail(const BodyModel& body, int num_vertices) {
+  const auto own = std::ranges::find(body.levels, num_vertices, &BodyLevel::asked_vertices);
+  return body_of_level(body, own != body.levels.end() ? *own : simplify(body, num_vertices));
+}
+
+const BodyLevel* coarsest_level(const BodyModel& body, double mean_iou) {
+  const BodyLevel* coarsest = nullptr;
+  for (const BodyLevel& level : body.levels) {
+    if (level.mean_iou < mean_iou) continue;
+    if (coarsest == nullptr || level.vertices.size() < coarsest->vertices.size()) coarsest = &level;
+  }
+  return coarsest;
 }
 
 std::shared_ptr<const BodyModel> level_of_detail(const std::shared_ptr<const BodyModel>& body, int num_vertices) {
