@@ -4,38 +4,10 @@
 #include <bit>
 
 #include "silpose/base/check.h"
+#include "silpose/image/mask_count.h"
 
 namespace silpose {
 namespace {
-
-// On x86-64 each kernel is built for the baseline and for processors with POPCNT or AVX2; the loader picks.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define SILPOSE_COUNTING_KERNEL __attribute__((target_clones("default", "popcnt", "avx2")))
-#else
-#define SILPOSE_COUNTING_KERNEL
-#endif
-
-SILPOSE_COUNTING_KERNEL int64_t count_words(const uint64_t* a, size_t n) {
-  int64_t sum = 0;
-  for (size_t i = 0; i < n; ++i) sum += std::popcount(a[i]);
-  return sum;
-}
-SILPOSE_COUNTING_KERNEL int64_t count_xor(const uint64_t* a, const uint64_t* b, size_t n) {
-  int64_t sum = 0;
-  for (size_t i = 0; i < n; ++i) sum += std::popcount(a[i] ^ b[i]);
-  return sum;
-}
-SILPOSE_COUNTING_KERNEL int64_t count_and(const uint64_t* a, const uint64_t* b, size_t n) {
-  int64_t sum = 0;
-  for (size_t i = 0; i < n; ++i) sum += std::popcount(a[i] & b[i]);
-  return sum;
-}
-SILPOSE_COUNTING_KERNEL int64_t count_or(const uint64_t* a, const uint64_t* b, size_t n) {
-  int64_t sum = 0;
-  for (size_t i = 0; i < n; ++i) sum += std::popcount(a[i] | b[i]);
-  return sum;
-}
 
 void check_equal_sizes(const Mask& a, const Mask& b) {
   check(a.width() == b.width() && a.height() == b.height(), "masks of {}x{} and {}x{} cannot be compared", a.width(),
@@ -57,7 +29,7 @@ void Mask::set(int x, int y, bool value) {
 
 void Mask::clear() { std::ranges::fill(words_, 0); }
 
-int64_t Mask::count() const { return count_words(words_.data(), words_.size()); }
+int64_t Mask::count() const { return count_set_bits(words_); }
 
 Box Mask::bounding_box() const {
   int x0 = width_, x1 = -1, y0 = height_, y1 = -1;
@@ -77,17 +49,17 @@ Box Mask::bounding_box() const {
 
 int64_t xor_count(const Mask& a, const Mask& b) {
   check_equal_sizes(a, b);
-  return count_xor(a.words().data(), b.words().data(), a.words().size());
+  return count_xor_bits(a.words(), b.words());
 }
 
 int64_t and_count(const Mask& a, const Mask& b) {
   check_equal_sizes(a, b);
-  return count_and(a.words().data(), b.words().data(), a.words().size());
+  return count_and_bits(a.words(), b.words());
 }
 
 int64_t or_count(const Mask& a, const Mask& b) {
   check_equal_sizes(a, b);
-  return count_or(a.words().data(), b.words().data(), a.words().size());
+  return count_or_bits(a.words(), b.words());
 }
 
 double intersection_over_union(const Mask& a, const Mask& b) {
