@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <vector>
 
 #include "silpose/base/clock.h"
 
 namespace silpose::bench {
-namespace {
 
 double quantile(std::vector<double> values, double fraction) {
   std::ranges::sort(values);
@@ -17,28 +15,27 @@ double quantile(std::vector<double> values, double fraction) {
   return values[below] + (position - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-}  // namespace
-
-Figure measure(const Contest& contest, const std::function<void()>& ours, const std::function<void()>& theirs) {
-  const auto value_of = [&](const std::function<void()>& run) {
-    const Stopwatch stopwatch;
-    run();
-    const double seconds = stopwatch.seconds();
-    return contest.higher_is_better ? contest.value_at_one_second / seconds : contest.value_at_one_second * seconds;
-  };
-  ours();
-  theirs();
-  std::vector<double> our_values, their_values;
+Figure measure(const Contest& contest, const Contestant& ours, std::span<const Contestant> peers) {
+  std::vector<const Contestant*> all = {&ours};
+  for (const Contestant& peer : peers) all.push_back(&peer);
+  for (const Contestant* contestant : all) contestant->run();
+  std::vector<std::vector<double>> values(all.size());
   for (int round = 0; round < contest.rounds; ++round) {
-    our_values.push_back(value_of(ours));
-    their_values.push_back(value_of(theirs));
+    for (size_t i = 0; i < all.size(); ++i) {
+      const Stopwatch stopwatch;
+      all[i]->run();
+      const double seconds = stopwatch.seconds(), amount = all[i]->amount;
+      values[i].push_back(contest.higher_is_better ? amount / seconds : seconds / amount);
+    }
   }
-  Figure figure{.value = quantile(our_values, 0.5),
-                .unit = contest.unit,
-                .peer = contest.peer,
-                .peer_value = quantile(their_values, 0.5)};
-  figure.ratio = contest.higher_is_better ? figure.value / figure.peer_value : figure.peer_value / figure.value;
-  figure.spread = (quantile(our_values, 0.75) - quantile(our_values, 0.25)) / figure.value;
+  Figure figure{.value = quantile(values[0], 0.5), .unit = contest.unit, .peers = {}};
+  figure.spread = (quantile(values[0], 0.75) - quantile(values[0], 0.25)) / figure.value;
+  for (size_t i = 1; i < all.size(); ++i) {
+    const double theirs = quantile(values[i], 0.5);
+    figure.peers.push_back({.peer = all[i]->name,
+                            .peer_value = theirs,
+                            .ratio = contest.higher_is_better ? figure.value / theirs : theirs / figure.value});
+  }
   return figure;
 }
 

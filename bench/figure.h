@@ -1,32 +1,46 @@
-// Figure: one thing measured next to a peer, and how it is measured: both in turns in the same run, so that whatever
-// else the machine does hits both alike.
+// Figure: one thing measured next to its peers, and how it is measured: all in turns in the same run, so that whatever
+// else the machine does hits all alike.
 // Threads: one at a time.
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace silpose::bench {
+
+struct PeerFigure {
+  std::string peer;       // what ran in the same run
+  double peer_value = 0;  // median over the rounds
+  double ratio = 0;       // above 1: ours is better
+};
 
 struct Figure {
   double value = 0;  // median over the rounds
   std::string unit;
-  std::string peer;       // what ran in the same run
-  double peer_value = 0;  // median over the rounds
-  double ratio = 0;       // above 1: ours is better
-  double spread = 0;      // of our value: interquartile range over the median
+  double spread = 0;              // of our value: interquartile range over the median
+  std::vector<PeerFigure> peers;  // the one to be measured by comes first
 };
 
 struct Contest {
-  std::string unit, peer;
-  bool higher_is_better = true;
-  double value_at_one_second = 1;  // what a run of one second stands for: runs are turned into values by it
-  int rounds = 15;
+  std::string unit;
+  bool higher_is_better = true;  // a rate: amount per second; otherwise a duration: seconds per amount
+  int rounds = 15;               // REQUIRES: at least 1
 };
 
-// Times `ours` and `theirs` in turns, after one untimed run of each. A rate is value_at_one_second / seconds, a
-// duration value_at_one_second x seconds.
-Figure measure(const Contest& contest, const std::function<void()>& ours, const std::function<void()>& theirs);
+// One way to do the work.
+struct Contestant {
+  std::string name;
+  double amount = 1;  // what one run does, in the unit's own count
+  std::function<void()> run;
+};
+
+// Times all in turns, after one untimed run of each.
+Figure measure(const Contest& contest, const Contestant& ours, std::span<const Contestant> peers);
+
+// The q-quantile, interpolated. REQUIRES: values, 0 <= fraction <= 1.
+double quantile(std::vector<double> values, double fraction);
 
 // Keeps a result from being optimised away.
 template <class T>

@@ -11,7 +11,6 @@ find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(meshoptimizer REQUIRED)
 find_package(hwy REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(hwy REQUIRED)
 # FlatBuffers for its headers alone, which need no target: its CMake package asks for the compiler's, too.
 find_path(FLATBUFFERS_INCLUDE_DIR flatbuffers/flatbuffers.h REQUIRED)
 
@@ -32,3 +31,7 @@ endif()
 find_package(GTest REQUIRED)
 find_package(assimp REQUIRED)  # for tests: a reader of the glTF that is written
 find_package(benchmark REQUIRED)
+
+# Optional: pipelines that silpose_bench is compared with (scripts/install-bench-peers).
+find_package(OpenGL QUIET COMPONENTS OpenGL EGL)
+find_package(embree 3 QUIET)

@@ -1,0 +1,26 @@
+// What silpose_bench measures, one function a figure: each checks its result, then times it next to its peers in so
+// many rounds. Errors: throw std::runtime_error for a wrong result or data that is not there.
+#pragma once
+
+#include "figure.h"
+
+namespace silpose::bench {
+
+// Poses to pixel-count distances, 128x128: the body's full mesh, and its level of detail of 2,000 vertices.
+Figure likelihood_full(int rounds);
+Figure likelihood_lod(int rounds);
+// likelihood_full on two threads against one: the median of the rounds' ratios.
+Figure scaling_2_threads(int rounds);
+
+// XOR count of two masks.
+Figure xor_128_us(int rounds);
+Figure xor_256_us(int rounds);
+
+// 361x361 poses of a two-bone tube, one frame's observation.
+Figure metric_surface_s(int rounds);
+
+// `silpose track` of a synthetic 640x480 colour clip, start-up included: its preset, and 1,000 particles in one layer.
+Figure track_vga_fps(int rounds);
+Figure track_vga_particles_fps(int rounds);
+
+}  // namespace silpose::bench
