@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,9 @@ struct PeerFigure {
   std::string peer;       // what ran in the same run
   double peer_value = 0;  // median over the rounds
   double ratio = 0;       // above 1: ours is better
+  // How much more of the processor the peer takes, all threads and started programs together: hardly disturbed by what
+  // else the machine does.
+  double processor_ratio = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct Figure {

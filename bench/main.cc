@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <nlohmann/json.hpp>
@@ -37,14 +38,17 @@ constexpr std::array kEntries = {
 };
 
 nlohmann::ordered_json json_of(const PeerFigure& peer) {
-  return {{"peer", peer.peer}, {"peer_value", peer.peer_value}, {"ratio", peer.ratio}};
+  return {{"peer", peer.peer},
+          {"peer_value", peer.peer_value},
+          {"ratio", peer.ratio},
+          {"processor_ratio", peer.processor_ratio}};
 }
 
 // The chief peer's figures stand beside ours (null without any), the other peers' in a list.
 nlohmann::ordered_json json_of(const Figure& figure) {
   nlohmann::ordered_json json = {{"value", figure.value}, {"unit", figure.unit}};
   if (figure.peers.empty()) {
-    json.update({{"peer", nullptr}, {"peer_value", nullptr}, {"ratio", nullptr}});
+    json.update({{"peer", nullptr}, {"peer_value", nullptr}, {"ratio", nullptr}, {"processor_ratio", nullptr}});
   } else {
     json.update(json_of(figure.peers.front()));
   }
@@ -57,6 +61,7 @@ std::string text_of(const Figure& figure) {
   std::string text = fmt::format("{:>12.4g} {:<8} spread {:.1f} %", figure.value, figure.unit, 100 * figure.spread);
   for (const PeerFigure& peer : figure.peers) {
     text += fmt::format("\n{:>31.4g} {:<8} {:.2f} x {}", peer.peer_value, figure.unit, peer.ratio, peer.peer);
+    if (!std::isnan(peer.processor_ratio)) text += fmt::format(" ({:.2f} x by processor time)", peer.processor_ratio);
   }
   return text;
 }

@@ -39,7 +39,7 @@ Figure xor_us(int size, int rounds) {
   const int64_t differing = cv::countNonZero(difference);
   verify(xor_count(a, b) == differing && scalar_xor_count(a.words(), b.words()) == differing, "XOR count");
 
-  constexpr int kRepeats = 2000;
+  constexpr int kRepeats = 20000;
   constexpr double kAmount = kRepeats / 1e6;  // seconds per amount are microseconds per count
   const Contestant ours{.name = "ours", .amount = kAmount, .run = [&] {
                           for (int i = 0; i < kRepeats; ++i) keep(xor_count(a, b));

@@ -9,7 +9,7 @@ namespace silpose::bench {
 
 std::vector<std::unique_ptr<Peer>> make_peers(const SilhouetteScene& scene) {
   std::vector<std::unique_ptr<Peer>> peers;
-  const auto add = [&](const char* pipeline, auto make) {
+  [[maybe_unused]] const auto add = [&](const char* pipeline, auto make) {
     try {
       peers.push_back(make(scene));
     } catch (const std::exception& failure) {

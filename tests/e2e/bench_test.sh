@@ -16,7 +16,7 @@ import sys
 figures = json.load(open(sys.argv[1]))
 assert list(figures) == ["xor_128_us", "xor_256_us"], figures
 for figure in figures.values():
-    assert list(figure) == ["value", "unit", "peer", "peer_value", "ratio", "spread", "others"], figure
+    assert list(figure) == ["value", "unit", "peer", "peer_value", "ratio", "processor_ratio", "spread", "others"], figure
     assert figure["unit"] == "us" and figure["peer"].startswith("scalar popcount"), figure
     assert len(figure["others"]) == 1, figure
 PYTHON
