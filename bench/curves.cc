@@ -1,6 +1,7 @@
 #include "curves.h"
 
 #include <fmt/format.h>
+#include <stdlib.h>
 
 #include <algorithm>
 #include <array>
@@ -191,17 +192,22 @@ void write_particles(const std::filesystem::path& folder, int rounds, TextFile& 
   measure_in_turns(points, rounds);
 
   TextFile csv(folder / "particles.csv");
-  csv.add("particles,one_thread_pose_ns,one_thread_spread,two_threads_pose_ns,two_threads_spread,ratio");
-  text.add("\n| particles | us a pose, 1 thread | 2 threads | ratio |");
-  text.add("|---|---|---|---|");
+  csv.add(
+      "particles,processor_pose_ns,processor_spread,one_thread_pose_ns,one_thread_spread,two_threads_pose_ns,"
+      "two_threads_spread,ratio");
+  text.add(
+      "\n| particles | us a pose, 1 thread, processor time | 1 thread, by the clock | 2 threads, by the clock | ratio "
+      "|");
+  text.add("|---|---|---|---|---|");
   for (size_t i = 0; i < counts.size(); ++i) {
-    const std::vector<double>&one = points[2 * i].wall_ns, &two = points[2 * i + 1].wall_ns;
+    const std::vector<double>&alone = points[2 * i].processor_ns, &one = points[2 * i].wall_ns,
+          &two = points[2 * i + 1].wall_ns;
     std::vector<double> ratios;
     for (size_t round = 0; round < one.size(); ++round) ratios.push_back(one[round] / two[round]);
-    csv.add(fmt::format("{},{:.0f},{:.3f},{:.0f},{:.3f},{:.3f}", counts[i], median(one), spread(one), median(two),
-                        spread(two), median(ratios)));
-    text.add(fmt::format("| {} | {:.1f} | {:.1f} | {:.2f} |", counts[i], median(one) / 1e3, median(two) / 1e3,
-                         median(ratios)));
+    csv.add(fmt::format("{},{:.0f},{:.3f},{:.0f},{:.3f},{:.0f},{:.3f},{:.3f}", counts[i], median(alone), spread(alone),
+                        median(one), spread(one), median(two), spread(two), median(ratios)));
+    text.add(fmt::format("| {} | {:.1f} | {:.1f} | {:.1f} | {:.2f} |", counts[i], median(alone) / 1e3,
+                         median(one) / 1e3, median(two) / 1e3, median(ratios)));
   }
   csv.close();
 }
@@ -213,17 +219,17 @@ void write_curves(const std::filesystem::path& folder, int rounds) {
   std::filesystem::create_directories(folder, failed);
   if (failed) throw std::runtime_error(fmt::format("{}: {}", folder.string(), failed.message()));
   const MachineBounds machine = measure_machine(static_cast<size_t>(skin_bytes(*human())));
+  std::array<double, 1> load = {0};
+  getloadavg(load.data(), 1);
   TextFile text(folder / "README.md");
-  text.add(fmt::format(
-      "# Poses to pixel-count distances\n\n`silpose_bench --curves` on {}: medians of {} rounds, every point once a "
-      "round; "
-      "one thread and 128x128 unless said; a thread's processor time, with particles the clock's. Measured bounds of "
-      "one thread: {:.2f} GHz, {:.0f} G "
-      "multiply-adds/s, "
-      "{:.0f} GB/s from a working set as large as the mesh. The CSV files have the spread (interquartile range over "
-      "the "
-      "median).\n",
-      machine_name(), rounds, machine.clock_hz / 1e9, machine.multiply_adds_per_s / 1e9, machine.bytes_per_s / 1e9));
+  text.add(fmt::format(R"(# Poses to pixel-count distances
+
+`silpose_bench --curves` on {}; load of the machine at the start: {:.1f}. Medians of {} rounds, every point once a round;
+processor time of one thread, and 128x128, unless said. Measured bounds of one thread: {:.2f} GHz, {:.0f} G multiply-adds/s,
+{:.0f} GB/s read from a working set as large as the mesh. The CSV files have the spread: interquartile range over median.
+)",
+                       machine_name(), load[0], rounds, machine.clock_hz / 1e9, machine.multiply_adds_per_s / 1e9,
+                       machine.bytes_per_s / 1e9));
   write_triangles(folder, rounds, machine, text);
   write_windows(folder, rounds, machine, text);
   write_particles(folder, rounds, text);
