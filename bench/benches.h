@@ -19,6 +19,12 @@ Figure xor_256_us(int rounds);
 // 361x361 poses of a two-bone tube, one frame's observation.
 Figure metric_surface_s(int rounds);
 
+// One Gauss-Newton step of the fit at sigma 4: energy, Jacobian, normal equations; of the level of detail of 2,500
+// vertices that the tracker fits, and of the full mesh. The energy alone, 2,500 vertices.
+Figure fit_step_us(int rounds);
+Figure fit_step_full_us(int rounds);
+Figure fit_energy_us(int rounds);
+
 // `silpose track` of a synthetic 640x480 colour clip, start-up included: its preset, and 1,000 particles in one layer.
 Figure track_vga_fps(int rounds);
 Figure track_vga_particles_fps(int rounds);

@@ -35,6 +35,9 @@ constexpr std::array kEntries = {
     Entry{"metric_surface_s", silpose::bench::metric_surface_s},
     Entry{"track_vga_fps", silpose::bench::track_vga_fps},
     Entry{"track_vga_particles_fps", silpose::bench::track_vga_particles_fps},
+    Entry{"fit_step_us", silpose::bench::fit_step_us},
+    Entry{"fit_step_full_us", silpose::bench::fit_step_full_us},
+    Entry{"fit_energy_us", silpose::bench::fit_energy_us},
 };
 
 nlohmann::ordered_json json_of(const PeerFigure& peer) {

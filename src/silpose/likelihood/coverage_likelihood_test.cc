@@ -8,6 +8,7 @@
 #include "silpose/body/human.h"
 #include "silpose/body/test_body.h"
 #include "silpose/likelihood/coverage_raster.h"
+#include "silpose/likelihood/coverage_reference.h"
 #include "silpose/render/silhouette.h"
 
 namespace silpose {
@@ -143,6 +144,40 @@ INSTANTIATE_TEST_SUITE_P(Bodies, CoverageDerivative,
                                          DerivativeCase{"Distorted", true, -0.15, 1},
                                          DerivativeCase{"TwoCameras", true, 0, 2}),
                          [](const auto& the_case) { return the_case.param.name; });
+
+// Against every triangle by itself, in double precision; also where the picture cuts the body off, and where little of
+// it is trusted.
+TEST_P(CoverageDerivative, AgreesWithThePlainReference) {
+  const auto body = GetParam().is_human ? human() : small_body();
+  std::vector<PinholeCamera> cameras = {look_at_camera(320, 240, 300, {0.5, 1.2, 3.5}, {0, 0.9, 0})};
+  if (GetParam().num_cameras > 1) cameras.push_back(look_at_camera(320, 240, 300, {1.5, 1.2, 0.5}, {0, 0.9, 0}));
+  for (PinholeCamera& camera : cameras)
+    camera.distortion = {GetParam().distortion, 0, 0.5 * GetParam().distortion, 0.01 * GetParam().distortion, 0};
+  const CoverageLikelihood likelihood(body, cameras);
+  CoverageLikelihood::Scratch scratch(likelihood);
+  const std::vector<double> truth = bent_pose(*body, 0.3);
+  for (const double bend : {0.22, -0.3}) {
+    const std::vector<double> pose = bent_pose(*body, bend);
+    std::vector<Observation> observations;
+    for (const PinholeCamera& camera : cameras) {
+      Observation observation = observation_of(render_silhouette(*body, camera, truth));
+      observation.confidence = ByteImage(320, 240, 1, 255);
+      for (int y = 0; y < 120 && bend < 0; ++y) {
+        for (int x = 0; x < 320; ++x) observation.confidence.at(x, y) = static_cast<uint8_t>(x % 200);
+      }
+      observations.push_back(std::move(observation));
+    }
+    const auto evidence = likelihood.prepare(observations);
+    for (const Blur blur : {Blur::k2, Blur::k4, Blur::k16}) {
+      const NormalEquations ours = likelihood.linearise(evidence, blur, pose, scratch);
+      const NormalEquations theirs = linearise_reference(*body, cameras, evidence, blur, pose);
+      EXPECT_NEAR(ours.energy, theirs.energy, 1e-4 * theirs.energy);
+      EXPECT_NEAR(likelihood.energy(evidence, blur, pose, scratch), theirs.energy, 1e-4 * theirs.energy);
+      EXPECT_LT((ours.gradient - theirs.gradient).norm(), 1e-4 * theirs.gradient.norm());
+      EXPECT_LT((ours.hessian - theirs.hessian).norm(), 1e-4 * theirs.hessian.norm());
+    }
+  }
+}
 
 TEST(CoverageLikelihood, IgnoresWhereItIsNotConfident) {
   const auto body = small_body();
