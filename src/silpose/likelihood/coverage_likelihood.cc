@@ -156,13 +156,13 @@ void draw_difference(OutlineSpans& spans, const PinholeCamera& camera, const Cov
   const auto width = static_cast<float>(camera.width);
   const float step = static_cast<float>(raster.cell) / static_cast<float>(rows_per_cell);
   const float by = step / (static_cast<float>(raster.cell) * static_cast<float>(raster.cell));
-  spans.for_each_span([&](int row, const SpanEnd& left, const SpanEnd& right) {
-    const float begin = std::max(left.x, 0.0f), end = std::min(right.x, width);
+  spans.for_each_span([&](int row, const auto& left, const auto& right) {
+    const float begin = std::max(left.x(), 0.0f), end = std::min(right.x(), width);
     if (!(begin < end)) return;
     const int cell_y = row / rows_per_cell;
     difference.add_span(cell_y, begin, end);
-    if (left.x > 0) on_end(left, difference.column_of(left.x), cell_y, -by);
-    if (right.x < width) on_end(right, difference.column_of(right.x), cell_y, by);
+    if (left.x() > 0) on_end(left.end(), difference.column_of(left.x()), cell_y, -by);
+    if (right.x() < width) on_end(right.end(), difference.column_of(right.x()), cell_y, by);
   });
 }
 

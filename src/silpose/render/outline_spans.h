@@ -5,7 +5,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -35,48 +35,74 @@ class OutlineSpans {
   // Scans the mesh whose vertices are projected to `pixels` [V]; faces with a vertex that is NaN are left out.
   void scan(std::span<const Eigen::Vector2f> pixels, const SampledRows& rows);
 
-  // Calls visit(row, left end, right end) for the spans inside, row by row, left to right; spans never overlap.
+  // Calls visit(row, left, right) for the spans inside, row by row, left to right; spans never overlap. What is visited
+  // has .x() of the end, in image pixels, and .end() with all that is known of it.
   template <class Visit>
-  void for_each_span(Visit&& visit);
+  void for_each_span(Visit&& visit) const;
 
  private:
-  struct Crossing {
-    float x;
-    uint32_t edge;  // index into edges_
-    float t;
-    int change;
-  };
   struct Edge {
     uint32_t vertex_a, vertex_b;  // a above b
-    float dx_dy;
+    int change;                   // of the winding number, to the right of it
+    int row_begin, row_end;       // that it crosses
+    float top_x, top_y, dx_dy, inverse_height;
   };
-  [[nodiscard]] SpanEnd end_of(const Crossing& crossing) const;
+  // A crossing is one number, so that sorting a row moves little: x in the upper half, as an integer of the same order;
+  // then the edge; then the change, plus 2, in the lowest three bits.
+  using Crossing = uint64_t;
+  class End {
+   public:
+    End(const OutlineSpans& spans, Crossing crossing, int row) : spans_(&spans), crossing_(crossing), row_(row) {}
+    [[nodiscard]] float x() const { return x_of(crossing_); }
+    [[nodiscard]] SpanEnd end() const;
+
+   private:
+    const OutlineSpans* spans_;
+    Crossing crossing_;
+    int row_;
+  };
+  static Crossing crossing_of(float x, uint32_t edge, int change) {
+    const auto bits = std::bit_cast<uint32_t>(x);
+    const uint32_t ordered = bits ^ (static_cast<uint32_t>(-static_cast<int32_t>(bits >> 31)) | 0x80000000u);
+    return static_cast<uint64_t>(ordered) << 32 | (edge << 3 | static_cast<uint32_t>(change + 2));
+  }
+  static float x_of(Crossing crossing) {
+    const auto ordered = static_cast<uint32_t>(crossing >> 32);
+    const uint32_t mask = ordered >> 31 ? 0x80000000u : 0xffffffffu;
+    return std::bit_cast<float>(ordered ^ mask);
+  }
+  static int change_of(Crossing crossing) { return static_cast<int>(crossing & 7) - 2; }
+  [[nodiscard]] float y_below(const Edge& edge, int row) const {
+    return rows_.first + static_cast<float>(row) * rows_.step - edge.top_y;
+  }
   void find_facing(std::span<const Eigen::Vector2f> pixels);
+  size_t find_edges(std::span<const Eigen::Vector2f> pixels);
+  void sort_rows();
 
   const EdgeTopology* topology_;
-  std::vector<int8_t> facing_;     // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
-  std::vector<uint32_t> outline_;  // [edges] the first few are edges whose two faces differ
-  std::vector<Edge> edges_;
-  std::vector<std::vector<Crossing>> row_crossings_;
-  int row_begin_ = 0, row_end_ = 0;  // rows with crossings
+  SampledRows rows_;
+  std::vector<int8_t> facing_;       // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
+  std::vector<uint32_t> outline_;    // [edges] the first few are edges whose two faces differ
+  std::vector<Edge> edges_;          // [edges] the first few: of the outline, that cross rows
+  std::vector<uint32_t> row_start_;  // [rows + 1] crossings of row r: row_start_[r] to row_start_[r + 1]
+  std::vector<Crossing> crossings_;  // by row, left to right
 };
 
-inline SpanEnd OutlineSpans::end_of(const Crossing& crossing) const {
-  const Edge& edge = edges_[crossing.edge];
-  return {crossing.x, edge.dx_dy, crossing.t, edge.vertex_a, edge.vertex_b};
+inline SpanEnd OutlineSpans::End::end() const {
+  const Edge& edge = spans_->edges_[static_cast<uint32_t>(crossing_) >> 3];
+  return {x(), edge.dx_dy, spans_->y_below(edge, row_) * edge.inverse_height, edge.vertex_a, edge.vertex_b};
 }
 
 template <class Visit>
-void OutlineSpans::for_each_span(Visit&& visit) {
-  for (int row = row_begin_; row < row_end_; ++row) {
-    auto& crossings = row_crossings_[static_cast<size_t>(row)];
-    std::sort(crossings.begin(), crossings.end(), [](const Crossing& a, const Crossing& b) { return a.x < b.x; });
+void OutlineSpans::for_each_span(Visit&& visit) const {
+  for (int row = 0; row < rows_.count; ++row) {
     int winding = 0;
-    const Crossing* start = nullptr;
-    for (const Crossing& crossing : crossings) {
-      if (winding == 0) start = &crossing;
-      winding += crossing.change;
-      if (winding == 0) visit(row, end_of(*start), end_of(crossing));
+    Crossing start = 0;
+    for (uint32_t i = row_start_[static_cast<size_t>(row)]; i < row_start_[static_cast<size_t>(row) + 1]; ++i) {
+      const Crossing crossing = crossings_[i];
+      if (winding == 0) start = crossing;
+      winding += change_of(crossing);
+      if (winding == 0) visit(row, End(*this, start, row), End(*this, crossing, row));
     }
   }
 }
