@@ -7,6 +7,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/body/skin_derivative.h"
+#include "silpose/likelihood/coverage_difference.h"
 #include "silpose/likelihood/coverage_raster.h"
 #include "silpose/render/outline_spans.h"
 #include "silpose/render/projected_skin.h"
@@ -22,36 +23,39 @@ double outline_scale(int cell) {
   return 2 * std::sqrt(std::numbers::pi) * cell * static_cast<double>(cell) * static_cast<double>(cell);
 }
 
-// d pixel / d x_in_world: two directions in world coordinates.
-struct PixelDirections {
-  Eigen::Vector3f u, v;
-};
-
-class CameraDerivative {
+// What moves a pixel: directions in camera coordinates along which a point's motion shifts its pixel right, and down.
+class PixelMotion {
  public:
-  explicit CameraDerivative(const PinholeCamera& camera)
-      : camera_(&camera),
+  explicit PixelMotion(const PinholeCamera& camera)
+      : lens_(camera),
         straight_(!camera.has_distortion()),
-        rotation_(camera.cam_from_world.rotation.cast<float>()),
-        translation_(camera.cam_from_world.translation.cast<float>()) {}
+        fx_(static_cast<float>(camera.fx)),
+        fy_(static_cast<float>(camera.fy)) {
+    lens_.cam_from_world = {};
+  }
 
-  [[nodiscard]] PixelDirections at(const Eigen::Vector3f& x_in_world) const {
+  // The direction of (pixel x - dx_dy * pixel y): of where an edge through the point crosses its row.
+  [[nodiscard]] Eigen::Vector3f crossing(const Eigen::Vector3f& x_in_cam, float dx_dy) const {
     if (!straight_) {
-      const Eigen::Matrix<double, 2, 3> jacobian = camera_->project_jacobian(x_in_world.cast<double>());
-      return {jacobian.row(0).cast<float>(), jacobian.row(1).cast<float>()};
+      const Eigen::Matrix<double, 2, 3> jacobian = lens_.project_jacobian(x_in_cam.cast<double>());
+      return (jacobian.row(0) - static_cast<double>(dx_dy) * jacobian.row(1)).cast<float>();
     }
-    const Eigen::Vector3f x = rotation_ * x_in_world + translation_;
-    const float inverse_depth = 1 / x.z();
-    const Eigen::Vector3f depth_row = rotation_.row(2).transpose() * inverse_depth;
-    return {(static_cast<float>(camera_->fx) * inverse_depth) * (rotation_.row(0).transpose() - x.x() * depth_row),
-            (static_cast<float>(camera_->fy) * inverse_depth) * (rotation_.row(1).transpose() - x.y() * depth_row)};
+    const float inverse_depth = 1 / x_in_cam.z();
+    const float u = fx_ * inverse_depth, v = -dx_dy * fy_ * inverse_depth;
+    return {u, v, -(u * x_in_cam.x() + v * x_in_cam.y()) * inverse_depth};
   }
 
  private:
-  const PinholeCamera* camera_;
+  PinholeCamera lens_;  // at the origin
   bool straight_;
-  Eigen::Matrix3f rotation_;
-  Eigen::Vector3f translation_;
+  float fx_, fy_;
+};
+
+// An end of a span: moving it to the right by 1 px changes its cell's coverage by `by`.
+struct CellEnd {
+  int cell_x, cell_y;
+  SpanEnd end;
+  float by;
 };
 
 }  // namespace
@@ -59,10 +63,10 @@ class CameraDerivative {
 struct CoverageLikelihood::Impl {
   struct View {
     View(const BodyModel& body, const PinholeCamera& camera)
-        : skin(body, camera), topology(skin.faces()), derivative(camera) {}
+        : skin(body, camera), topology(skin.faces()), pixel_motion(camera) {}
     ProjectedSkin skin;
     EdgeTopology topology;
-    CameraDerivative derivative;
+    PixelMotion pixel_motion;
   };
   Impl(std::shared_ptr<const BodyModel> the_body, std::vector<PinholeCamera> the_cameras, int the_rows_per_cell)
       : body(std::move(the_body)), cameras(std::move(the_cameras)), rows_per_cell(the_rows_per_cell) {
@@ -84,8 +88,27 @@ struct CoverageLikelihood::Scratch::Impl {
   std::vector<OutlineSpans> spans;      // [C]
   SkinDerivative skin_derivative;
   CoverageDifference difference;
-  std::vector<float> end_derivative;  // [D]
+  std::vector<CellEnd> ends;              // in the order of their rows
+  std::vector<uint32_t> ends_of_cell;     // ends by number of their cell
+  std::vector<uint32_t> cell_ends_start;  // [cells + 1] in ends_of_cell
+
+  void sort_ends_by_cell();
 };
+
+// A counting sort; ends of a cell stay in their order.
+void CoverageLikelihood::Scratch::Impl::sort_ends_by_cell() {
+  cell_ends_start.assign(difference.number_cells() + 1, 0);
+  const auto number_of = [&](const CellEnd& end) {
+    return static_cast<size_t>(difference.number_of(end.cell_x, end.cell_y));
+  };
+  for (const CellEnd& end : ends) ++cell_ends_start[number_of(end)];
+  uint32_t total = 0;
+  for (uint32_t& start : cell_ends_start) start = std::exchange(total, total + start);
+  ends_of_cell.resize(ends.size());
+  for (uint32_t i = 0; i < ends.size(); ++i) ends_of_cell[cell_ends_start[number_of(ends[i])]++] = i;
+  std::copy_backward(cell_ends_start.begin(), cell_ends_start.end() - 1, cell_ends_start.end());
+  cell_ends_start.front() = 0;
+}
 
 CoverageLikelihood::Scratch::Scratch(const CoverageLikelihood& likelihood)
     : impl_(std::make_unique<Impl>(*likelihood.impl_)) {}
@@ -245,30 +268,39 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
   Scratch::Impl& s = *scratch.impl_;
   const Eigen::Index D = impl_->body->skeleton.num_dofs();
   NormalEquations equations{0, Eigen::VectorXd::Zero(D), Eigen::MatrixXd::Zero(D, D)};
-  s.end_derivative.resize(static_cast<size_t>(D));
   for (size_t c = 0; c < impl_->views.size(); ++c) {
     const CoverageEvidence::View& evident = evidence.views[c];
     if (evident.trust <= 0) continue;
     const Impl::View& view = impl_->views[c];
     const CoverageEvidence::Raster& raster = evident.rasters[static_cast<size_t>(blur)];
-    s.difference.start(raster, impl_->rows_per_cell, static_cast<int>(D));
+    s.difference.start(raster, impl_->rows_per_cell);
     if (view.skin.project(pose, s.projected)) {
       s.pixels.resize(view.skin.num_slots());
       view.skin.copy_pixels(s.projected, s.pixels);
       s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell));
-      s.skin_derivative.set_pose(pose);
-      const auto add_vertex = [&](uint32_t slot, float weight, float dx_dy) {
-        const uint32_t vertex = view.skin.vertex_of_slot()[slot];
-        const PixelDirections d = view.derivative.at(s.skin_derivative.position(vertex));
-        s.skin_derivative.add(vertex, weight * (d.u - dx_dy * d.v));
-      };
+      s.ends.clear();
       draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference,
                       [&](const SpanEnd& end, int cell_x, int cell_y, float by) {
-                        add_vertex(end.vertex_a, by * (1 - end.t), end.dx_dy);
-                        add_vertex(end.vertex_b, by * end.t, end.dx_dy);
-                        s.skin_derivative.take(s.end_derivative);
-                        s.difference.add_derivative(cell_x, cell_y, s.end_derivative);
+                        s.difference.mark_end(cell_x, cell_y);
+                        s.ends.push_back({cell_x, cell_y, end, by});
                       });
+      s.sort_ends_by_cell();
+      s.skin_derivative.set_pose(pose, impl_->cameras[c].cam_from_world);
+      for (size_t cell = 0; cell + 1 < s.cell_ends_start.size(); ++cell) {
+        for (uint32_t i = s.cell_ends_start[cell]; i < s.cell_ends_start[cell + 1]; ++i) {
+          const CellEnd& at = s.ends[s.ends_of_cell[i]];
+          const float by = at.by * s.difference.confidence(at.cell_x, at.cell_y);
+          const auto add_vertex = [&](uint32_t slot, float weight) {
+            const uint32_t vertex = view.skin.vertex_of_slot()[slot];
+            const Eigen::Vector3f x = s.skin_derivative.position(vertex);
+            s.skin_derivative.add(vertex, weight * view.pixel_motion.crossing(x, at.end.dx_dy));
+          };
+          add_vertex(at.end.vertex_a, by * (1 - at.end.t));
+          add_vertex(at.end.vertex_b, by * at.end.t);
+        }
+        s.skin_derivative.end_sum();
+      }
+      s.skin_derivative.take(s.difference.jacobian(s.skin_derivative.row_stride()));
     }
     const double weight = evident.trust / evidence.noise[c] * outline_scale(raster.cell);
     equations.energy += weight * s.difference.finish();

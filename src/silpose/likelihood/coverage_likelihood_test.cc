@@ -7,6 +7,7 @@
 
 #include "silpose/body/human.h"
 #include "silpose/body/test_body.h"
+#include "silpose/likelihood/coverage_difference.h"
 #include "silpose/likelihood/coverage_raster.h"
 #include "silpose/likelihood/coverage_reference.h"
 #include "silpose/render/silhouette.h"
