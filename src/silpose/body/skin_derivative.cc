@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "silpose/base/check.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "silpose/body/skin_derivative.cc"
 #include <hwy/foreach_target.h>
@@ -13,38 +15,42 @@ namespace silpose::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// kVectors registers of a row, from column `first` on: the sum over its wrenches.
-template <size_t kVectors>
-void add_up(const SkinDerivative::Wrench* begin, const SkinDerivative::Wrench* end, const float* motion, size_t stride,
-            size_t first, float* row) {
+// One register of a point's two rows, from column `first` on. A point x that turns about an axis through c by the
+// right hand moves by axis x (x - c) = axis x x + shift.
+void rows_of_point(const SkinDerivative::Part* begin, const SkinDerivative::Part* end, const float* projection,
+                   const float* motion, size_t stride, size_t first, float* rows) {
   const hn::ScalableTag<float> d;
-  const size_t lanes = hn::Lanes(d);
-  auto a = hn::Zero(d), b = a, c = a;
-  const auto add = [&](float value, const float* HWY_RESTRICT by) HWY_ATTR {
-    const auto v = hn::Set(d, value);
-    a = hn::MulAdd(v, hn::Load(d, by), a);
-    if constexpr (kVectors > 1) b = hn::MulAdd(v, hn::Load(d, by + lanes), b);
-    if constexpr (kVectors > 2) c = hn::MulAdd(v, hn::Load(d, by + 2 * lanes), c);
-  };
-  for (const auto* wrench = begin; wrench != end; ++wrench) {
-    const float* const of_joint = motion + wrench->joint_idx * 6 * stride + first;
-    for (size_t k = 0; k < 3; ++k) add(wrench->moment[k], of_joint + k * stride);
-    for (size_t k = 0; k < 3; ++k) add(wrench->force[k], of_joint + (3 + k) * stride);
+  auto x = hn::Zero(d), y = x, z = x;
+  for (const auto* part = begin; part != end; ++part) {
+    const float* const of_joint = motion + part->joint_idx * 6 * stride + first;
+    const auto turn_x = hn::Load(d, of_joint), turn_y = hn::Load(d, of_joint + stride),
+               turn_z = hn::Load(d, of_joint + 2 * stride);
+    const auto weight = hn::Set(d, part->weight);
+    const auto at_x = hn::Set(d, part->weighted_x[0]), at_y = hn::Set(d, part->weighted_x[1]),
+               at_z = hn::Set(d, part->weighted_x[2]);
+    x = hn::MulAdd(weight, hn::Load(d, of_joint + 3 * stride), x);
+    y = hn::MulAdd(weight, hn::Load(d, of_joint + 4 * stride), y);
+    z = hn::MulAdd(weight, hn::Load(d, of_joint + 5 * stride), z);
+    x = hn::NegMulAdd(turn_z, at_y, hn::MulAdd(turn_y, at_z, x));
+    y = hn::NegMulAdd(turn_x, at_z, hn::MulAdd(turn_z, at_x, y));
+    z = hn::NegMulAdd(turn_y, at_x, hn::MulAdd(turn_x, at_y, z));
   }
-  hn::Store(a, d, row + first);
-  if constexpr (kVectors > 1) hn::Store(b, d, row + first + lanes);
-  if constexpr (kVectors > 2) hn::Store(c, d, row + first + 2 * lanes);
+  for (size_t row = 0; row < 2; ++row) {  // columns of the projection are contiguous
+    auto sum = hn::Mul(hn::Set(d, projection[row]), x);
+    sum = hn::MulAdd(hn::Set(d, projection[2 + row]), y, sum);
+    sum = hn::MulAdd(hn::Set(d, projection[4 + row]), z, sum);
+    hn::Store(sum, d, rows + row * stride + first);
+  }
 }
 
-void rows_of_wrenches(const SkinDerivative::Wrench* wrenches, const uint32_t* sum_end, size_t num_sums,
-                      const float* motion, size_t stride, float* rows) {
+void rows_of_points(const SkinDerivative::Part* parts, const uint32_t* part_end, size_t num_points,
+                    const float* projections, const float* motion, size_t stride, float* rows) {
   const size_t lanes = hn::Lanes(hn::ScalableTag<float>());
-  const SkinDerivative::Wrench* begin = wrenches;
-  for (size_t s = 0; s < num_sums; ++s, rows += stride) {
-    const SkinDerivative::Wrench* const end = wrenches + sum_end[s];
+  const SkinDerivative::Part* begin = parts;
+  for (size_t p = 0; p < num_points; ++p, rows += 2 * stride, projections += 6) {
+    const SkinDerivative::Part* const end = parts + part_end[p];
     size_t column = 0;
-    for (; column + 3 * lanes <= stride; column += 3 * lanes) add_up<3>(begin, end, motion, stride, column, rows);
-    for (; column < stride; column += lanes) add_up<1>(begin, end, motion, stride, column, rows);
+    for (; column < stride; column += lanes) rows_of_point(begin, end, projections, motion, stride, column, rows);
     begin = end;
   }
 }
@@ -55,17 +61,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace silpose {
 
-HWY_EXPORT(rows_of_wrenches);
+HWY_EXPORT(rows_of_points);
 
 SkinDerivative::SkinDerivative(const BodyModel& body)
     : body_(&body),
       stride_(AlignedFloats::padded(body.skeleton.dofs().size() + 1)),
       world_from_joint_(body.skeleton.joints().size()),
       origin_(Eigen::Vector3f::Zero()),
-      origin_from_rest_(body.skeleton.joints().size()),
-      sums_(body.skeleton.joints().size(), Rows::Zero()),
-      is_touched_(body.skeleton.joints().size(), 0),
-      touched_(body.skeleton.joints().size() + 1) {
+      origin_from_rest_(body.skeleton.joints().size(), Eigen::Matrix4f::Zero()) {
   const SkinWeights& skin = body.skin;
   entry_start_ = skin.row_start;
   for (size_t v = 0; v < body.rest.vertices.size(); ++v) {
@@ -93,53 +96,48 @@ void SkinDerivative::set_pose(std::span<const double> pose, const Rigid3& frame_
   origin_ = origin.cast<float>();
   for (size_t j = 0; j < world_from_joint_.size(); ++j) {
     const Rigid3 matrix = origin_from_world * (world_from_joint_[j] * body_->joint_from_rest[j]);
-    origin_from_rest_[j] << matrix.rotation.transpose().cast<float>(), matrix.translation.transpose().cast<float>();
+    origin_from_rest_[j].topRows<3>() << matrix.rotation.cast<float>(), matrix.translation.cast<float>();
   }
   for (const MovedBy& moved : moved_by_) {
     const Dof& dof = skeleton.dofs()[moved.dof_idx];
     const Eigen::Vector3d axis = frame_from_world.rotation * axes.col(moved.dof_idx);
     const Eigen::Vector3d centre =
         origin_from_world * world_from_joint_[static_cast<size_t>(dof.joint_idx)].translation;
-    // Along a translation g does g . axis; turned about the axis, g at x does axis . ((x - centre) x g).
-    const Eigen::Vector3d by_moment = dof.is_translation ? Eigen::Vector3d::Zero() : axis;
-    const Eigen::Vector3d by_force = dof.is_translation ? axis : centre.cross(axis);
+    const Eigen::Vector3d turn = dof.is_translation ? Eigen::Vector3d::Zero() : axis;
+    const Eigen::Vector3d shift = dof.is_translation ? axis : centre.cross(axis);
     float* const column = motion_.data() + moved.joint_idx * 6 * stride_ + moved.dof_idx;
     for (size_t k = 0; k < 3; ++k) {
-      column[k * stride_] = static_cast<float>(by_moment[static_cast<Eigen::Index>(k)]);
-      column[(3 + k) * stride_] = static_cast<float>(by_force[static_cast<Eigen::Index>(k)]);
+      column[k * stride_] = static_cast<float>(turn[static_cast<Eigen::Index>(k)]);
+      column[(3 + k) * stride_] = static_cast<float>(shift[static_cast<Eigen::Index>(k)]);
     }
   }
-  wrenches_.clear();
-  sum_end_.clear();
-  for (size_t i = 0; i < num_touched_; ++i) {
-    sums_[touched_[i]].setZero();
-    is_touched_[touched_[i]] = 0;
-  }
-  num_touched_ = 0;
 }
 
-void SkinDerivative::end_sum() {
-  for (size_t i = 0; i < num_touched_; ++i) {
-    const uint32_t j = touched_[i];
-    Rows& sum = sums_[j];
-    const Rows& matrix = origin_from_rest_[j];
-    // The sum of (A X w) x g.
-    const auto turns = [&](int a, int b) {
-      return (matrix.col(a).array() * sum.col(b).array() - matrix.col(b).array() * sum.col(a).array()).sum();
-    };
-    wrenches_.push_back({{turns(1, 2), turns(2, 0), turns(0, 1)}, {sum(3, 0), sum(3, 1), sum(3, 2)}, j});
-    sum.setZero();
-    is_touched_[j] = 0;
+void SkinDerivative::set_points(std::span<const uint32_t> vertices) {
+  parts_.clear();
+  part_end_.clear();
+  positions_.clear();
+  for (const uint32_t vertex : vertices) {
+    Eigen::Vector4f x(origin_.x(), origin_.y(), origin_.z(), 0);
+    for (uint32_t i = entry_start_[vertex]; i < entry_start_[vertex + 1]; ++i) {
+      const Eigen::Matrix4f& matrix = origin_from_rest_[entries_[i].joint_idx];
+      const Eigen::Vector4f& rest = entries_[i].weighted_rest;
+      const Eigen::Vector4f part =
+          (matrix.col(0) * rest[0] + matrix.col(1) * rest[1]) + (matrix.col(2) * rest[2] + matrix.col(3) * rest[3]);
+      parts_.push_back({{part[0], part[1], part[2]}, rest[3], entries_[i].joint_idx});
+      x += part;
+    }
+    part_end_.push_back(static_cast<uint32_t>(parts_.size()));
+    positions_.emplace_back(x.head<3>());
   }
-  num_touched_ = 0;
-  sum_end_.push_back(static_cast<uint32_t>(wrenches_.size()));
 }
 
-void SkinDerivative::take(float* rows) {
-  HWY_DYNAMIC_DISPATCH(rows_of_wrenches)
-  (wrenches_.data(), sum_end_.data(), sum_end_.size(), motion_.data(), stride_, rows);
-  wrenches_.clear();
-  sum_end_.clear();
+void SkinDerivative::find_rows(std::span<const Eigen::Matrix<float, 2, 3>> projections, float* rows) const {
+  check(projections.size() == positions_.size(), "SkinDerivative: {} projections of {} points", projections.size(),
+        positions_.size());
+  if (projections.empty()) return;
+  HWY_DYNAMIC_DISPATCH(rows_of_points)
+  (parts_.data(), part_end_.data(), positions_.size(), projections.data()->data(), motion_.data(), stride_, rows);
 }
 
 }  // namespace silpose

@@ -1,7 +1,7 @@
-// SkinDerivative: how vertices of a skinned mesh move with the pose, along given directions: rows d (sum of g . x) /
-// d pose. With x = sum_j w_j A_j X (A_j = where the pose puts joint j's part of the rest mesh) a sum over vertices is
-// known by sum of g (w_j X, w_j)' for each joint: its force and its moment there, and a row is six numbers a joint
-// times what a turn or shift of each DOF above the joint does to them. Threads: one thread per object.
+// SkinDerivative: how points of a skinned mesh move with the pose: two rows d (P x) / d pose for each of them, P [2, 3]
+// being how its pixel, or whatever else is asked for, moves with x.
+// With x = sum_j w_j A_j X (A_j = where the pose puts joint j's part of the rest mesh), dx is the sum over its joints
+// of what a turn or shift of each DOF above the joint does to w_j A_j X. Threads: one thread per object.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,32 +17,28 @@ class SkinDerivative {
  public:
   explicit SkinDerivative(const BodyModel& body);  // keeps a reference
 
-  // Takes a pose [D] and forgets all sums. Positions and directions are in the coordinates of `frame`.
+  // Takes a pose [D]. Positions are in the coordinates of `frame`.
   void set_pose(std::span<const double> pose, const Rigid3& frame_from_world = {});
 
-  [[nodiscard]] Eigen::Vector3f position(uint32_t vertex) const;
+  // Takes points [P], vertices of the mesh; after set_pose().
+  void set_points(std::span<const uint32_t> vertices);
 
-  // Adds the vertex, seen along `direction` (any length), to the sum at hand.
-  void add(uint32_t vertex, const Eigen::Vector3f& direction);
-  // The sum at hand is complete, the next begins.
-  void end_sum();
-
-  [[nodiscard]] size_t num_sums() const { return sum_end_.size(); }
+  // Of the points [P].
+  [[nodiscard]] std::span<const Eigen::Vector3f> positions() const { return positions_; }
 
   // What a row takes: D and at least one more, which is zero.
   [[nodiscard]] size_t row_stride() const { return stride_; }
 
-  // rows [sums, row_stride()], aligned as AlignedFloats: d sum / d pose; then zeros. Forgets all sums.
-  void take(float* rows);
+  // rows [P, 2, row_stride()], aligned as AlignedFloats: d (projections[p] x_p) / d pose, then zeros.
+  void find_rows(std::span<const Eigen::Matrix<float, 2, 3>> projections, float* rows) const;
 
-  // What take() computes from: the force and moment of a sum at a joint, about origin_.
-  struct Wrench {
-    float moment[3], force[3];
+  // What find_rows() computes from: a joint's part of a point, about origin_.
+  struct Part {
+    float weighted_x[3], weight;
     uint32_t joint_idx;
   };
 
  private:
-  using Rows = Eigen::Matrix<float, 4, 3>;  // three rows of four numbers, each contiguous
   struct Entry {
     Eigen::Vector4f weighted_rest;  // w X, w
     uint32_t joint_idx;
@@ -53,45 +49,16 @@ class SkinDerivative {
 
   const BodyModel* body_;
   size_t stride_;
-  std::vector<uint32_t> entry_start_;     // [V + 1]
-  std::vector<Entry> entries_;            // a vertex and a joint that moves it
-  std::vector<MovedBy> moved_by_;         // every joint with every DOF above it
-  std::vector<Rigid3> world_from_joint_;  // [J]
-  Eigen::Vector3f origin_;                // near the body, so that moments about it stay exact
-  std::vector<Rows> origin_from_rest_;    // [J]
-  AlignedFloats motion_;                  // [J, 6, stride] by moment x y z, by force x y z; zero for other DOF
-  std::vector<Rows> sums_;                // [J] of the sum at hand
-  std::vector<uint8_t> is_touched_;       // [J]
-  std::vector<uint32_t> touched_;         // [J + 1] joints of the sum at hand
-  size_t num_touched_ = 0;
-  std::vector<Wrench> wrenches_;
-  std::vector<uint32_t> sum_end_;  // in wrenches_
+  std::vector<uint32_t> entry_start_;              // [V + 1]
+  std::vector<Entry> entries_;                     // a vertex and a joint that moves it
+  std::vector<MovedBy> moved_by_;                  // every joint with every DOF above it
+  std::vector<Rigid3> world_from_joint_;           // [J]
+  Eigen::Vector3f origin_;                         // near the body, so that moments about it stay exact
+  std::vector<Eigen::Matrix4f> origin_from_rest_;  // [J]
+  AlignedFloats motion_;                           // [J, 6, stride] turns x y z, shifts x y z; zero for other DOF
+  std::vector<Part> parts_;                        // of the points, one after another
+  std::vector<uint32_t> part_end_;                 // [P]
+  std::vector<Eigen::Vector3f> positions_;         // [P]
 };
-
-inline Eigen::Vector3f SkinDerivative::position(uint32_t vertex) const {
-  Eigen::Array4f x = Eigen::Array4f::Zero(), y = x, z = x;
-  for (uint32_t i = entry_start_[vertex]; i < entry_start_[vertex + 1]; ++i) {
-    const Entry& entry = entries_[i];
-    const Rows& matrix = origin_from_rest_[entry.joint_idx];
-    x += matrix.col(0).array() * entry.weighted_rest.array();
-    y += matrix.col(1).array() * entry.weighted_rest.array();
-    z += matrix.col(2).array() * entry.weighted_rest.array();
-  }
-  return Eigen::Vector3f(x.sum(), y.sum(), z.sum()) + origin_;
-}
-
-inline void SkinDerivative::add(uint32_t vertex, const Eigen::Vector3f& direction) {
-  for (uint32_t i = entry_start_[vertex]; i < entry_start_[vertex + 1]; ++i) {
-    const Entry& entry = entries_[i];
-    const uint32_t j = entry.joint_idx;
-    Rows& sum = sums_[j];
-    sum.col(0) += direction.x() * entry.weighted_rest;
-    sum.col(1) += direction.y() * entry.weighted_rest;
-    sum.col(2) += direction.z() * entry.weighted_rest;
-    touched_[num_touched_] = j;
-    num_touched_ += static_cast<size_t>(1 - is_touched_[j]);
-    is_touched_[j] = 1;
-  }
-}
 
 }  // namespace silpose

@@ -20,28 +20,28 @@ TEST(SkinDerivative, AgreesWithFiniteDifferencesOfSkinning) {
   const auto vertices = skin_vertices(body, pose);
   const Eigen::Vector3f g(0.3f, -1.0f, 0.6f), h(-2.0f, 0.5f, 0.1f);
   const uint32_t v = 5, w = static_cast<uint32_t>(vertices.size()) - 3;
-  EXPECT_LT((derivative.position(v) - (turn * vertices[v] + frame.translation.cast<float>())).norm(), 1e-6);
-  for (int twice = 0; twice < 2; ++twice) {  // taking forgets
-    derivative.add(w, turn * g);
-    derivative.end_sum();
-    derivative.end_sum();  // of nothing
-    derivative.add(v, turn * g);
-    derivative.add(w, turn * h);
-    derivative.end_sum();
-    ASSERT_EQ(derivative.num_sums(), 3);
+  for (int twice = 0; twice < 2; ++twice) {
+    derivative.set_points(std::vector{w, v});
+    const Eigen::Vector3f expected = turn * vertices[v] + frame.translation.cast<float>();
+    EXPECT_LT((derivative.positions()[1] - expected).norm(), 1e-6);
     AlignedFloats rows;
-    rows.resize(3 * derivative.row_stride());
-    derivative.take(rows.data());
-    for (size_t d = 0; d < derivative.row_stride(); ++d) EXPECT_EQ(rows.data()[derivative.row_stride() + d], 0) << d;
-    const float* const row = rows.data() + 2 * derivative.row_stride();
-    EXPECT_EQ(row[pose.size()], 0);
+    rows.resize(4 * derivative.row_stride());
+    Eigen::Matrix<float, 2, 3> one, other;
+    one << (turn * h).transpose(), (turn * g).transpose();
+    other << (turn * g).transpose(), (turn * h).transpose();
+    derivative.find_rows(std::vector{one, other}, rows.data());
+    const auto row = [&](size_t i) { return rows.data() + i * derivative.row_stride(); };
+    for (size_t i = 0; i < 4; ++i) EXPECT_EQ(row(i)[pose.size()], 0);
     for (size_t d = 0; d < pose.size(); ++d) {
       const double step = 1e-3;
       std::vector<double> more = pose, less = pose;
       more[d] += step;
       less[d] -= step;
       const auto x = skin_vertices(body, more), y = skin_vertices(body, less);
-      EXPECT_NEAR(row[d], (g.dot(x[v] - y[v]) + h.dot(x[w] - y[w])) / (2 * step), 2e-3) << d;
+      EXPECT_NEAR(row(0)[d], h.dot(x[w] - y[w]) / (2 * step), 2e-3) << d;
+      EXPECT_NEAR(row(1)[d], g.dot(x[w] - y[w]) / (2 * step), 2e-3) << d;
+      EXPECT_NEAR(row(2)[d], g.dot(x[v] - y[v]) / (2 * step), 2e-3) << d;
+      EXPECT_NEAR(row(3)[d], h.dot(x[v] - y[v]) / (2 * step), 2e-3) << d;
     }
   }
 }

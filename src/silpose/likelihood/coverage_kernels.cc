@@ -12,6 +12,38 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
+#ifndef SILPOSE_LIKELIHOOD_COVERAGE_KERNELS_ONCE
+#define SILPOSE_LIKELIHOOD_COVERAGE_KERNELS_ONCE
+namespace silpose {
+namespace {
+
+constexpr int32_t kSide = 2 * kBlurRadius + 1;  // cells that a cell's blur reaches along a row
+constexpr uint32_t kRowBits = 6;
+constexpr size_t kAtOnce = 4;
+constexpr size_t kMostNear = static_cast<size_t>((kBlurRadius + 1) * kSide) + kAtOnce;
+
+// Cells after cell i within reach of its blur: number << kRowBits | where the middle of their row is in the weights
+// [kBlurRadius + 1, kSide]. First all are listed, without branches but where a row has many: how many a row has is not
+// predictable.
+size_t list_near(const EndCells& cells, size_t i, uint32_t* near) {
+  const int32_t rows = std::min(kBlurRadius + 1, cells.y_end - cells.y[i]);
+  size_t count = 0;
+  for (int32_t dy = 0; dy < rows; ++dy) {
+    const int32_t* const rank = cells.rank + (cells.y[i] + dy) * cells.rank_stride + cells.x[i];
+    const auto begin = static_cast<uint32_t>(rank[dy == 0 ? 1 : -kBlurRadius]);
+    const uint32_t in_row = static_cast<uint32_t>(rank[kBlurRadius + 1]) - begin;
+    const auto of_row = static_cast<uint32_t>(dy * kSide + kBlurRadius);
+    for (uint32_t t = 0; t < kAtOnce; ++t) near[count + t] = (begin + t) << kRowBits | of_row;
+    for (uint32_t t = kAtOnce; t < in_row; ++t) near[count + t] = (begin + t) << kRowBits | of_row;
+    count += in_row;
+  }
+  return count;
+}
+
+}  // namespace
+}  // namespace silpose
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace silpose::HWY_NAMESPACE {
 
@@ -60,30 +92,49 @@ double blur_cells(const float* difference, size_t stride, size_t width, size_t h
   return total;
 }
 
+void add_up_ends(const EndRow* ends, const uint32_t* ends_end, size_t num_cells, const float* point_rows, size_t stride,
+                 float* jacobian) {
+  const Tag d;
+  const size_t lanes = hn::Lanes(d);
+  uint32_t begin = 0;
+  for (size_t cell = 0; cell < num_cells; ++cell, jacobian += stride) {
+    for (size_t column = 0; column < stride; column += lanes) {
+      auto sum = hn::Zero(d);
+      for (uint32_t i = begin; i < ends_end[cell]; ++i) {
+        for (size_t k = 0; k < 2; ++k) {
+          const float* const of_point = point_rows + ends[i].points[k] * 2 * stride + column;
+          sum = hn::MulAdd(hn::Set(d, ends[i].of_x[k]), hn::Load(d, of_point), sum);
+          sum = hn::MulAdd(hn::Set(d, ends[i].of_y[k]), hn::Load(d, of_point + stride), sum);
+        }
+      }
+      hn::Store(sum, d, jacobian + column);
+    }
+    begin = ends_end[cell];
+  }
+}
+
 // kVectors registers of every row, from column `first` on.
 template <size_t kVectors>
 void add_near_columns(const EndCells& cells, const float* weights, const float* jacobian, size_t stride, size_t first,
                       float* half_near) {
   const Tag d;
   const size_t lanes = hn::Lanes(d);
+  uint32_t near[kMostNear];
   for (size_t i = 0; i < cells.count; ++i) {
     const float* row = jacobian + i * stride + first;
     const auto half = hn::Set(d, 0.5f * weights[kBlurRadius]);
     auto a = hn::Mul(half, hn::Load(d, row)), b = a, c = a;
     if constexpr (kVectors > 1) b = hn::Mul(half, hn::Load(d, row + lanes));
     if constexpr (kVectors > 2) c = hn::Mul(half, hn::Load(d, row + 2 * lanes));
-    const int32_t cell_x = cells.x[i], cell_y = cells.y[i];
-    const int32_t rows = std::min(kBlurRadius + 1, cells.y_end - cell_y);
-    for (int32_t dy = 0; dy < rows; ++dy) {
-      const int32_t* const rank = cells.rank + (cell_y + dy) * cells.rank_stride + cell_x;
-      const int32_t end = rank[kBlurRadius + 1];
-      for (int32_t j = dy == 0 ? rank[1] : rank[-kBlurRadius]; j < end; ++j) {
-        const auto k = hn::Set(d, weights[dy * (2 * kBlurRadius + 1) + cells.x[j] - cell_x + kBlurRadius]);
-        row = jacobian + static_cast<size_t>(j) * stride + first;
-        a = hn::MulAdd(k, hn::Load(d, row), a);
-        if constexpr (kVectors > 1) b = hn::MulAdd(k, hn::Load(d, row + lanes), b);
-        if constexpr (kVectors > 2) c = hn::MulAdd(k, hn::Load(d, row + 2 * lanes), c);
-      }
+    const size_t num_near = list_near(cells, i, near);
+    for (size_t n = 0; n < num_near; ++n) {
+      const uint32_t j = near[n] >> kRowBits;
+      const uint32_t of_row = near[n] & ((1u << kRowBits) - 1);
+      const auto k = hn::Set(d, weights[static_cast<int32_t>(of_row) + cells.x[j] - cells.x[i]]);
+      row = jacobian + j * stride + first;
+      a = hn::MulAdd(k, hn::Load(d, row), a);
+      if constexpr (kVectors > 1) b = hn::MulAdd(k, hn::Load(d, row + lanes), b);
+      if constexpr (kVectors > 2) c = hn::MulAdd(k, hn::Load(d, row + 2 * lanes), c);
     }
     float* const out = half_near + i * stride + first;
     hn::Store(a, d, out);
@@ -93,7 +144,6 @@ void add_near_columns(const EndCells& cells, const float* weights, const float* 
 }
 
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near) {
-  constexpr int kSide = 2 * kBlurRadius + 1;
   float weights[(kBlurRadius + 1) * kSide];
   for (int dy = 0; dy <= kBlurRadius; ++dy) {
     for (int dx = -kBlurRadius; dx <= kBlurRadius; ++dx) {
@@ -185,11 +235,17 @@ std::array<float, kBlurRadius + 1> make_kernel() {
 const std::array<float, kBlurRadius + 1> kBlurKernel = make_kernel();
 
 HWY_EXPORT(blur_cells);
+HWY_EXPORT(add_up_ends);
 HWY_EXPORT(add_near_rows);
 HWY_EXPORT(transposed_product);
 
 double blur_cells(const float* difference, size_t stride, size_t width, size_t height, float* half, float* blurred) {
   return HWY_DYNAMIC_DISPATCH(blur_cells)(difference, stride, width, height, half, blurred);
+}
+
+void add_up_ends(const EndRow* ends, const uint32_t* ends_end, size_t num_cells, const float* point_rows, size_t stride,
+                 float* jacobian) {
+  HWY_DYNAMIC_DISPATCH(add_up_ends)(ends, ends_end, num_cells, point_rows, stride, jacobian);
 }
 
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near) {

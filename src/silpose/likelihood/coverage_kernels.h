@@ -31,6 +31,17 @@ struct EndCells {
   int32_t y_end;
 };
 
+// An end of a span in a cell: what it adds to the cell's row, of the two rows (pixel x, then y) of each of two points.
+struct EndRow {
+  uint32_t points[2];
+  float of_x[2], of_y[2];
+};
+
+// jacobian [cells, stride] = what the ends of each cell, up to ends_end[cell], add up to; point_rows [points, 2,
+// stride].
+void add_up_ends(const EndRow* ends, const uint32_t* ends_end, size_t num_cells, const float* point_rows, size_t stride,
+                 float* jacobian);
+
 // half_near [n, stride] = for each row i of `jacobian` [n, stride], K_ii / 2 J_i + sum over j > i of K_ij J_j, so that
 // J' K J = M + M' with M = J' half_near. REQUIRES: rows aligned, stride a multiple of kLanes.
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near);

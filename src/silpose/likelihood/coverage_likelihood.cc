@@ -8,6 +8,7 @@
 #include "silpose/base/check.h"
 #include "silpose/body/skin_derivative.h"
 #include "silpose/likelihood/coverage_difference.h"
+#include "silpose/likelihood/coverage_kernels.h"
 #include "silpose/likelihood/coverage_raster.h"
 #include "silpose/render/outline_spans.h"
 #include "silpose/render/projected_skin.h"
@@ -23,10 +24,10 @@ double outline_scale(int cell) {
   return 2 * std::sqrt(std::numbers::pi) * cell * static_cast<double>(cell) * static_cast<double>(cell);
 }
 
-// What moves a pixel: directions in camera coordinates along which a point's motion shifts its pixel right, and down.
-class PixelMotion {
+// d pixel / d x_in_cam.
+class LensDerivative {
  public:
-  explicit PixelMotion(const PinholeCamera& camera)
+  explicit LensDerivative(const PinholeCamera& camera)
       : lens_(camera),
         straight_(!camera.has_distortion()),
         fx_(static_cast<float>(camera.fx)),
@@ -34,15 +35,13 @@ class PixelMotion {
     lens_.cam_from_world = {};
   }
 
-  // The direction of (pixel x - dx_dy * pixel y): of where an edge through the point crosses its row.
-  [[nodiscard]] Eigen::Vector3f crossing(const Eigen::Vector3f& x_in_cam, float dx_dy) const {
-    if (!straight_) {
-      const Eigen::Matrix<double, 2, 3> jacobian = lens_.project_jacobian(x_in_cam.cast<double>());
-      return (jacobian.row(0) - static_cast<double>(dx_dy) * jacobian.row(1)).cast<float>();
-    }
+  [[nodiscard]] Eigen::Matrix<float, 2, 3> at(const Eigen::Vector3f& x_in_cam) const {
+    if (!straight_) return lens_.project_jacobian(x_in_cam.cast<double>()).cast<float>();
     const float inverse_depth = 1 / x_in_cam.z();
-    const float u = fx_ * inverse_depth, v = -dx_dy * fy_ * inverse_depth;
-    return {u, v, -(u * x_in_cam.x() + v * x_in_cam.y()) * inverse_depth};
+    const float u = fx_ * inverse_depth, v = fy_ * inverse_depth;
+    Eigen::Matrix<float, 2, 3> jacobian;
+    jacobian << u, 0, -u * x_in_cam.x() * inverse_depth, 0, v, -v * x_in_cam.y() * inverse_depth;
+    return jacobian;
   }
 
  private:
@@ -51,11 +50,10 @@ class PixelMotion {
   float fx_, fy_;
 };
 
-// An end of a span: moving it to the right by 1 px changes its cell's coverage by `by`.
+// An end of a span, and its cell.
 struct CellEnd {
   int cell_x, cell_y;
-  SpanEnd end;
-  float by;
+  EndRow row;
 };
 
 }  // namespace
@@ -63,10 +61,10 @@ struct CellEnd {
 struct CoverageLikelihood::Impl {
   struct View {
     View(const BodyModel& body, const PinholeCamera& camera)
-        : skin(body, camera), topology(skin.faces()), pixel_motion(camera) {}
+        : skin(body, camera), topology(skin.faces()), lens(camera) {}
     ProjectedSkin skin;
     EdgeTopology topology;
-    PixelMotion pixel_motion;
+    LensDerivative lens;
   };
   Impl(std::shared_ptr<const BodyModel> the_body, std::vector<PinholeCamera> the_cameras, int the_rows_per_cell)
       : body(std::move(the_body)), cameras(std::move(the_cameras)), rows_per_cell(the_rows_per_cell) {
@@ -80,7 +78,8 @@ struct CoverageLikelihood::Impl {
 };
 
 struct CoverageLikelihood::Scratch::Impl {
-  explicit Impl(const CoverageLikelihood::Impl& likelihood) : skin_derivative(*likelihood.body) {
+  explicit Impl(const CoverageLikelihood::Impl& likelihood)
+      : skin_derivative(*likelihood.body), point_of_vertex(likelihood.body->rest.vertices.size(), kNone) {
     for (const auto& view : likelihood.views) spans.emplace_back(view.topology);
   }
   ProjectedSkin::Scratch projected;
@@ -88,26 +87,43 @@ struct CoverageLikelihood::Scratch::Impl {
   std::vector<OutlineSpans> spans;      // [C]
   SkinDerivative skin_derivative;
   CoverageDifference difference;
-  std::vector<CellEnd> ends;              // in the order of their rows
-  std::vector<uint32_t> ends_of_cell;     // ends by number of their cell
-  std::vector<uint32_t> cell_ends_start;  // [cells + 1] in ends_of_cell
+  std::vector<CellEnd> ends;        // in the order of their rows
+  std::vector<EndRow> sorted_ends;  // by number of their cell
+  std::vector<uint32_t> ends_end;   // [cells] in sorted_ends
 
-  void sort_ends_by_cell();
+  // Vertices that ends lie between, each once.
+  static constexpr uint32_t kNone = 0xffffffff;
+  std::vector<uint32_t> point_of_vertex;  // [V] kNone for most
+  std::vector<uint32_t> points;           // their vertices
+  std::vector<Eigen::Matrix<float, 2, 3>> projections;
+  AlignedFloats point_rows;
+
+  uint32_t point_of(uint32_t vertex);
+  size_t sort_ends();
 };
 
-// A counting sort; ends of a cell stay in their order.
-void CoverageLikelihood::Scratch::Impl::sort_ends_by_cell() {
-  cell_ends_start.assign(difference.number_cells() + 1, 0);
-  const auto number_of = [&](const CellEnd& end) {
+uint32_t CoverageLikelihood::Scratch::Impl::point_of(uint32_t vertex) {
+  uint32_t& point = point_of_vertex[vertex];
+  if (point == kNone) {
+    point = static_cast<uint32_t>(points.size());
+    points.push_back(vertex);
+  }
+  return point;
+}
+
+// By number of the cell, counting how many each has; ends of a cell stay in their order. Returns the number of cells.
+size_t CoverageLikelihood::Scratch::Impl::sort_ends() {
+  const size_t num_cells = difference.number_cells();
+  ends_end.assign(num_cells, 0);
+  const auto cell_of = [&](const CellEnd& end) {
     return static_cast<size_t>(difference.number_of(end.cell_x, end.cell_y));
   };
-  for (const CellEnd& end : ends) ++cell_ends_start[number_of(end)];
+  for (const CellEnd& end : ends) ++ends_end[cell_of(end)];
   uint32_t total = 0;
-  for (uint32_t& start : cell_ends_start) start = std::exchange(total, total + start);
-  ends_of_cell.resize(ends.size());
-  for (uint32_t i = 0; i < ends.size(); ++i) ends_of_cell[cell_ends_start[number_of(ends[i])]++] = i;
-  std::copy_backward(cell_ends_start.begin(), cell_ends_start.end() - 1, cell_ends_start.end());
-  cell_ends_start.front() = 0;
+  for (uint32_t& next : ends_end) next = std::exchange(total, total + next);
+  sorted_ends.resize(ends.size());
+  for (const CellEnd& end : ends) sorted_ends[ends_end[cell_of(end)]++] = end.row;
+  return num_cells;
 }
 
 CoverageLikelihood::Scratch::Scratch(const CoverageLikelihood& likelihood)
@@ -279,28 +295,31 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
       view.skin.copy_pixels(s.projected, s.pixels);
       s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell));
       s.ends.clear();
+      s.points.clear();
       draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference,
                       [&](const SpanEnd& end, int cell_x, int cell_y, float by) {
                         s.difference.mark_end(cell_x, cell_y);
-                        s.ends.push_back({cell_x, cell_y, end, by});
+                        by *= s.difference.confidence(cell_x, cell_y);
+                        const float of_a = by * (1 - end.t), of_b = by * end.t;
+                        const auto vertex_of_slot = view.skin.vertex_of_slot();
+                        s.ends.push_back({cell_x,
+                                          cell_y,
+                                          {.points = {s.point_of(vertex_of_slot[end.vertex_a]),
+                                                      s.point_of(vertex_of_slot[end.vertex_b])},
+                                           .of_x = {of_a, of_b},
+                                           .of_y = {-end.dx_dy * of_a, -end.dx_dy * of_b}}});
                       });
-      s.sort_ends_by_cell();
+      for (const uint32_t vertex : s.points) s.point_of_vertex[vertex] = Scratch::Impl::kNone;
       s.skin_derivative.set_pose(pose, impl_->cameras[c].cam_from_world);
-      for (size_t cell = 0; cell + 1 < s.cell_ends_start.size(); ++cell) {
-        for (uint32_t i = s.cell_ends_start[cell]; i < s.cell_ends_start[cell + 1]; ++i) {
-          const CellEnd& at = s.ends[s.ends_of_cell[i]];
-          const float by = at.by * s.difference.confidence(at.cell_x, at.cell_y);
-          const auto add_vertex = [&](uint32_t slot, float weight) {
-            const uint32_t vertex = view.skin.vertex_of_slot()[slot];
-            const Eigen::Vector3f x = s.skin_derivative.position(vertex);
-            s.skin_derivative.add(vertex, weight * view.pixel_motion.crossing(x, at.end.dx_dy));
-          };
-          add_vertex(at.end.vertex_a, by * (1 - at.end.t));
-          add_vertex(at.end.vertex_b, by * at.end.t);
-        }
-        s.skin_derivative.end_sum();
-      }
-      s.skin_derivative.take(s.difference.jacobian(s.skin_derivative.row_stride()));
+      s.skin_derivative.set_points(s.points);
+      s.projections.clear();
+      for (const Eigen::Vector3f& x : s.skin_derivative.positions()) s.projections.push_back(view.lens.at(x));
+      const size_t stride = s.skin_derivative.row_stride();
+      s.point_rows.resize(std::max(s.point_rows.size(), 2 * s.points.size() * stride));
+      s.skin_derivative.find_rows(s.projections, s.point_rows.data());
+      const size_t num_cells = s.sort_ends();
+      add_up_ends(s.sorted_ends.data(), s.ends_end.data(), num_cells, s.point_rows.data(), stride,
+                  s.difference.jacobian(stride));
     }
     const double weight = evident.trust / evidence.noise[c] * outline_scale(raster.cell);
     equations.energy += weight * s.difference.finish();
