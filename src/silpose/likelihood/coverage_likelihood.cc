@@ -228,7 +228,7 @@ std::vector<double> CoverageLikelihood::residuals(const CoverageEvidence& eviden
     if (view.skin.project(pose, s.projected)) {
       s.pixels.resize(view.skin.num_slots());
       view.skin.copy_pixels(s.projected, s.pixels);
-      s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell));
+      s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell), s.projected.some_unseen);
       draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference,
                       [](const SpanEnd&, int, int, float) {});
     }
@@ -293,7 +293,7 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
     if (view.skin.project(pose, s.projected)) {
       s.pixels.resize(view.skin.num_slots());
       view.skin.copy_pixels(s.projected, s.pixels);
-      s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell));
+      s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell), s.projected.some_unseen);
       s.ends.clear();
       s.points.clear();
       draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference,

@@ -1,10 +1,59 @@
 #include "silpose/render/outline_spans.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 #include "silpose/base/check.h"
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "silpose/render/outline_spans.cc"
+#include <hwy/foreach_target.h>
+// After foreach_target.h.
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace silpose::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// One bit a position: whether the strip order of its triangle winds anticlockwise on the screen. `xy`: of the strip's
+// points, in turns; read a vector's length beyond the last.
+void find_winding_of_floats(const float* HWY_RESTRICT xy, size_t num_positions, uint8_t* HWY_RESTRICT winding) {
+#if HWY_TARGET == HWY_SCALAR
+  for (size_t p = 0; p < num_positions; p += 8) {
+    uint32_t bits = 0;
+    for (size_t i = 0; i < 8; ++i) {
+      const float* const a = xy + 2 * (p + i);
+      bits |= static_cast<uint32_t>((a[2] - a[0]) * (a[5] - a[1]) < (a[3] - a[1]) * (a[4] - a[0])) << i;
+    }
+    winding[p / 8] = static_cast<uint8_t>(bits);
+  }
+#else
+  const hn::CappedTag<float, 16> d;
+  const hn::Repartition<int64_t, decltype(d)> d64;
+  constexpr size_t kPositions = hn::MaxLanes(hn::CappedTag<float, 16>()) / 2;
+  for (size_t p = 0; p < num_positions; p += 8) {
+    uint32_t bits = 0;
+    for (size_t i = 0; i < 8; i += kPositions) {
+      const float* const at = xy + 2 * (p + i);
+      const auto a = hn::LoadU(d, at);
+      const auto ab = hn::Sub(hn::LoadU(d, at + 2), a), ac = hn::Sub(hn::LoadU(d, at + 4), a);
+      const auto products = hn::Mul(ab, hn::Shuffle2301(ac));  // ab.x ac.y, ab.y ac.x
+      const auto is_less = hn::VecFromMask(d, hn::Lt(hn::Shuffle2301(products), products));
+      uint8_t mask[8];
+      hn::StoreMaskBits(d64, hn::MaskFromVec(hn::BitCast(d64, hn::DupOdd(is_less))), mask);
+      bits |= static_cast<uint32_t>(mask[0]) << i;
+    }
+    winding[p / 8] = static_cast<uint8_t>(bits);
+  }
+#endif
+}
+
+}  // namespace silpose::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace silpose {
 namespace {
 
@@ -19,44 +68,103 @@ int ceil_within(float value, float count) {
 
 }  // namespace
 
-OutlineSpans::OutlineSpans(const EdgeTopology& topology)
-    : topology_(&topology),
-      facing_(topology.faces.size() + 1, 0),
-      outline_(topology.edges.faces.size() + 1),
-      edges_(topology.edges.faces.size() + 1) {}
+HWY_EXPORT(find_winding_of_floats);
 
-void OutlineSpans::find_facing(std::span<const Eigen::Vector2f> pixels) {
-  const Eigen::Vector2f* const point = pixels.data();
-  const Face* const face = topology_->faces.data();
-  int8_t* const facing = facing_.data();
-  const size_t count = topology_->faces.size();
-  for (size_t f = 0; f < count; ++f) {
-    const Eigen::Vector2f a = point[face[f][0]], b = point[face[f][1]], c = point[face[f][2]];
+OutlineSpans::OutlineSpans(const EdgeTopology& topology) : topology_(&topology) {
+  constexpr size_t kSpare = 16;  // the widest vector's: whole ones are read, and lists are written longer than they are
+  const StripOrder& strips = topology.strips;
+  strip_points_.resize(strips.vertex.size());
+  winding_.resize(strips.vertex.size() / 8 + kSpare);
+  found_.resize(std::max(3 * (strips.runs.size() + 1), strips.pairs.size() + 1));
+  outline_.resize(std::max(strips.num_inner_edges + strips.borders.size(), topology.edges.faces.size()) + kSpare);
+  edges_.resize(outline_.size());
+}
+
+// As OutlineEdges finds it, in floating point: strips in place of faces, long runs of edges in place of single ones.
+void OutlineSpans::find_outline(std::span<const Eigen::Vector2f> pixels) {
+  const StripOrder& strips = topology_->strips;
+  for (size_t i = 0; i < strip_points_.size(); ++i) strip_points_[i] = pixels[strips.vertex[i]];
+  HWY_DYNAMIC_DISPATCH(find_winding_of_floats)(strip_points_.data()->data(), strips.num_positions, winding_.data());
+
+  constexpr uint64_t kNoneLeft = uint64_t{1} << 63;  // no run is as long
+  const auto word_at = [&](uint32_t position) {
+    uint64_t word;
+    std::memcpy(&word, winding_.data() + position / 8, sizeof word);
+    return word;
+  };
+  size_t num_found = 0;
+  for (size_t r = 0; r < strips.runs.size(); ++r) {
+    const StripOrder::Run& run = strips.runs[r];
+    const uint64_t first = word_at(run.first), other = word_at(run.other) >> (run.other % 8);
+    const uint64_t differ = (first ^ other ^ run.expected) & run.mask;
+    found_[3 * num_found] = differ;
+    found_[3 * num_found + 1] = first;
+    found_[3 * num_found + 2] = r;
+    num_found += static_cast<size_t>(differ != 0);
+  }
+  size_t count = 0;
+  OutlineEdge* const outline = outline_.data();
+  for (size_t f = 0; f < num_found; ++f) {
+    uint64_t differ = found_[3 * f];
+    const uint64_t first = found_[3 * f + 1];
+    const StripOrder::Run& run = strips.runs[found_[3 * f + 2]];
+    const uint32_t* const start = strips.vertex.data() + run.first + StripOrder::kSide[run.side][0];
+    const auto along = static_cast<int64_t>(StripOrder::kSide[run.side][1]) - StripOrder::kSide[run.side][0];
+    const size_t end = count + static_cast<size_t>(std::popcount(differ));
+    while (differ != 0) {
+      for (size_t i = 0; i < 4; ++i) {
+        const auto bit = static_cast<uint32_t>(std::countr_zero(differ | kNoneLeft));  // written, not kept
+        const int64_t turned = -static_cast<int64_t>(first >> bit & 1);
+        outline[count + i] = {start[bit + (along & turned)], start[bit + (along & ~turned)], 2};
+        differ &= differ - 1;
+      }
+      count += 4;
+    }
+    count = end;
+  }
+  num_outline_ = count;
+  size_t num_pairs = 0;
+  for (const StripOrder::Pair& pair : strips.pairs) {
+    const uint32_t first = pair.first(), other = pair.other();
+    const uint32_t first_winding = winding_[first / 8] >> (first % 8) & 1;
+    const uint32_t other_winding = winding_[other / 8] >> (other % 8);
+    found_[num_pairs] = uint64_t{pair.first_and_side} << 1 | first_winding;
+    num_pairs += (first_winding ^ other_winding ^ pair.other_and_expected) & 1;
+  }
+  const auto add = [&](size_t position, size_t side, size_t turned, int change) {
+    add_outline(strips.vertex[position + StripOrder::kSide[side][turned]],
+                strips.vertex[position + StripOrder::kSide[side][turned ^ 1]], change);
+  };
+  for (size_t i = 0; i < num_pairs; ++i) add(found_[i] >> 3, found_[i] >> 1 & 3, found_[i] & 1, 2);
+  for (const StripOrder::Border& border : strips.borders) {
+    add(border.position, border.side, winding_[border.position / 8] >> (border.position % 8) & 1, 1);
+  }
+}
+
+void OutlineSpans::find_outline_among_seen(std::span<const Eigen::Vector2f> pixels) {
+  const std::vector<Face>& faces = topology_->faces;
+  facing_.assign(faces.size() + 1, 0);
+  for (size_t f = 0; f < faces.size(); ++f) {
+    const Eigen::Vector2f a = pixels[faces[f][0]], b = pixels[faces[f][1]], c = pixels[faces[f][2]];
     const float area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-    // Without branches, which nothing predicts; NaN is neither.
-    facing[f] = static_cast<int8_t>(static_cast<int>(area >= 0) - static_cast<int>(area < 0));
+    facing_[f] = static_cast<int8_t>(area >= 0 ? 1 : area < 0 ? -1 : 0);  // NaN is neither
+  }
+  num_outline_ = 0;
+  for (size_t e = 0; e < topology_->edges.faces.size(); ++e) {
+    const auto [along, against] = topology_->edges.faces[e];
+    const auto [from, to] = topology_->edges.vertices[e];
+    const int change = facing_[along] - facing_[against];
+    if (change != 0) add_outline(from, to, change);
   }
 }
 
 // Edges of the outline that cross rows, into edges_; counts the crossings of each row into row_start_.
 size_t OutlineSpans::find_edges(std::span<const Eigen::Vector2f> pixels) {
-  const auto* const edge_faces = topology_->edges.faces.data();
-  const auto* const edge_vertices = topology_->edges.vertices.data();
-  const int8_t* const facing = facing_.data();
-  const auto num_edges = static_cast<uint32_t>(topology_->edges.faces.size());
-  size_t num_outline = 0;
-  for (uint32_t e = 0; e < num_edges; ++e) {  // branch-free: few are kept, and not predictably
-    outline_[num_outline] = e;
-    num_outline += static_cast<size_t>(facing[edge_faces[e][0]] != facing[edge_faces[e][1]]);
-  }
-
   const float rows_per_pixel = 1 / rows_.step, row_count = static_cast<float>(rows_.count);
   row_start_.assign(static_cast<size_t>(rows_.count) + 1, 0);
   size_t num_kept = 0;
-  for (size_t i = 0; i < num_outline; ++i) {
-    const uint32_t e = outline_[i];
-    const auto [from, to] = edge_vertices[e];
-    const int change = facing[edge_faces[e][0]] - facing[edge_faces[e][1]];
+  for (size_t i = 0; i < num_outline_; ++i) {
+    const auto [from, to, change] = outline_[i];
     const bool upwards = pixels[to].y() < pixels[from].y();
     const uint32_t a = upwards ? to : from, b = upwards ? from : to;
     const Eigen::Vector2f top = pixels[a], bottom = pixels[b];
@@ -80,11 +188,15 @@ size_t OutlineSpans::find_edges(std::span<const Eigen::Vector2f> pixels) {
   return num_kept;
 }
 
-void OutlineSpans::scan(std::span<const Eigen::Vector2f> pixels, const SampledRows& rows) {
+void OutlineSpans::scan(std::span<const Eigen::Vector2f> pixels, const SampledRows& rows, bool some_unseen) {
   check(pixels.size() >= topology_->num_vertices, "OutlineSpans: {} points for {} vertices", pixels.size(),
         topology_->num_vertices);
   rows_ = rows;
-  find_facing(pixels);
+  if (some_unseen || topology_->faces.empty()) {
+    find_outline_among_seen(pixels);
+  } else {
+    find_outline(pixels);
+  }
   const size_t num_edges = find_edges(pixels);
 
   // From edges that begin and end, to crossings of each row, to where its crossings end.
@@ -134,3 +246,4 @@ void OutlineSpans::sort_rows() {
 }
 
 }  // namespace silpose
+#endif  // HWY_ONCE

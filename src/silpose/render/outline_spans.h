@@ -32,8 +32,9 @@ class OutlineSpans {
  public:
   explicit OutlineSpans(const EdgeTopology& topology);  // keeps a reference
 
-  // Scans the mesh whose vertices are projected to `pixels` [V]; faces with a vertex that is NaN are left out.
-  void scan(std::span<const Eigen::Vector2f> pixels, const SampledRows& rows);
+  // Scans the mesh whose vertices are projected to `pixels` [V]. Faces with a vertex that is NaN are left out;
+  // `some_unseen` tells whether there may be any.
+  void scan(std::span<const Eigen::Vector2f> pixels, const SampledRows& rows, bool some_unseen);
 
   // Calls visit(row, left, right) for the spans inside, row by row, left to right; spans never overlap. What is visited
   // has .x() of the end, in image pixels, and .end() with all that is known of it.
@@ -75,14 +76,24 @@ class OutlineSpans {
   [[nodiscard]] float y_below(const Edge& edge, int row) const {
     return rows_.first + static_cast<float>(row) * rows_.step - edge.top_y;
   }
-  void find_facing(std::span<const Eigen::Vector2f> pixels);
+  void find_outline(std::span<const Eigen::Vector2f> pixels);
+  void find_outline_among_seen(std::span<const Eigen::Vector2f> pixels);
+  void add_outline(uint32_t from, uint32_t to, int change) { outline_[num_outline_++] = {from, to, change}; }
   size_t find_edges(std::span<const Eigen::Vector2f> pixels);
   void sort_rows();
 
   const EdgeTopology* topology_;
   SampledRows rows_;
-  std::vector<int8_t> facing_;       // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
-  std::vector<uint32_t> outline_;    // [edges] the first few are edges whose two faces differ
+  struct OutlineEdge {
+    uint32_t from, to;
+    int change;  // of the winding number, crossing it where it runs down
+  };
+  std::vector<Eigen::Vector2f> strip_points_;  // [positions + padding]
+  std::vector<uint8_t> winding_;               // [positions / 8 + padding] bits: the strip order winds anticlockwise
+  std::vector<uint64_t> found_;                // scratch
+  std::vector<int8_t> facing_;                 // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
+  std::vector<OutlineEdge> outline_;           // [edges + padding] the first few: whose two faces differ
+  size_t num_outline_ = 0;
   std::vector<Edge> edges_;          // [edges] the first few: of the outline, that cross rows
   std::vector<uint32_t> row_start_;  // [rows + 1] crossings of row r: row_start_[r] to row_start_[r + 1]
   std::vector<Crossing> crossings_;  // by row, left to right
