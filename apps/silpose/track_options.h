@@ -42,7 +42,7 @@ bool estimates_camera(const TrackOptions& options);
 // What the tracker is asked for, all but its first pose. Throws UsageError for what it refuses. Errors: no level of the
 // body's is as fine as --iou asks for.
 Result<TrackerOptions> tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
-                               std::vector<PinholeCamera> cameras, uint64_t seed);
+                                       std::vector<PinholeCamera> cameras, uint64_t seed);
 
 // The pose that --init names, of a frame of the clip, or the file's first where it does not have that frame. [D]
 // Nothing with `descent`. Errors: those of read_poses(); no pose in it.
