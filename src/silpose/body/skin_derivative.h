@@ -23,6 +23,9 @@ class SkinDerivative {
   // Takes points [P], vertices of the mesh; after set_pose().
   void set_points(std::span<const uint32_t> vertices);
 
+  // Fetches what a vertex needs from memory, some time before set_points().
+  void prefetch(uint32_t vertex) const { __builtin_prefetch(&entries_[entry_start_[vertex]]); }
+
   // Of the points [P].
   [[nodiscard]] std::span<const Eigen::Vector3f> positions() const { return positions_; }
 

@@ -107,6 +107,7 @@ uint32_t CoverageLikelihood::Scratch::Impl::point_of(uint32_t vertex) {
   if (point == kNone) {
     point = static_cast<uint32_t>(points.size());
     points.push_back(vertex);
+    skin_derivative.prefetch(vertex);
   }
   return point;
 }

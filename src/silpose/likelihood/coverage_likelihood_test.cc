@@ -11,6 +11,7 @@
 #include "silpose/likelihood/coverage_raster.h"
 #include "silpose/likelihood/coverage_reference.h"
 #include "silpose/render/silhouette.h"
+#include "silpose/render/simd_targets.h"
 
 namespace silpose {
 namespace {
@@ -170,12 +171,19 @@ TEST_P(CoverageDerivative, AgreesWithThePlainReference) {
     }
     const auto evidence = likelihood.prepare(observations);
     for (const Blur blur : {Blur::k2, Blur::k4, Blur::k16}) {
-      const NormalEquations ours = likelihood.linearise(evidence, blur, pose, scratch);
       const NormalEquations theirs = linearise_reference(*body, cameras, evidence, blur, pose);
-      EXPECT_NEAR(ours.energy, theirs.energy, 1e-4 * theirs.energy);
-      EXPECT_NEAR(likelihood.energy(evidence, blur, pose, scratch), theirs.energy, 1e-4 * theirs.energy);
-      EXPECT_LT((ours.gradient - theirs.gradient).norm(), 1e-4 * theirs.gradient.norm());
-      EXPECT_LT((ours.hessian - theirs.hessian).norm(), 1e-4 * theirs.hessian.norm());
+      for_each_simd_target([&](const char* target) {
+        SCOPED_TRACE(target);
+        const NormalEquations ours = likelihood.linearise(evidence, blur, pose, scratch);
+        EXPECT_NEAR(ours.energy, theirs.energy, 1e-4 * theirs.energy);
+        EXPECT_NEAR(likelihood.energy(evidence, blur, pose, scratch), theirs.energy, 1e-4 * theirs.energy);
+        EXPECT_LT((ours.gradient - theirs.gradient).norm(), 1e-4 * theirs.gradient.norm());
+        EXPECT_LT((ours.hessian - theirs.hessian).norm(), 1e-4 * theirs.hessian.norm());
+        EXPECT_EQ(ours.hessian, ours.hessian.transpose());
+        // Scratch that was used for another pose and blur changes nothing.
+        CoverageLikelihood::Scratch fresh(likelihood);
+        EXPECT_EQ(likelihood.linearise(evidence, blur, pose, fresh).hessian, ours.hessian);
+      });
     }
   }
 }

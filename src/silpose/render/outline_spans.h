@@ -41,6 +41,12 @@ class OutlineSpans {
   template <class Visit>
   void for_each_span(Visit&& visit) const;
 
+  // What scan() works on: an edge whose two faces are turned to different sides, or that has one only.
+  struct OutlineEdge {
+    uint32_t from, to;
+    int change;  // of the winding number, crossing it where it runs down
+  };
+
  private:
   struct Edge {
     uint32_t vertex_a, vertex_b;  // a above b
@@ -84,10 +90,6 @@ class OutlineSpans {
 
   const EdgeTopology* topology_;
   SampledRows rows_;
-  struct OutlineEdge {
-    uint32_t from, to;
-    int change;  // of the winding number, crossing it where it runs down
-  };
   std::vector<Eigen::Vector2f> strip_points_;  // [positions + padding]
   std::vector<uint8_t> winding_;               // [positions / 8 + padding] bits: the strip order winds anticlockwise
   std::vector<uint64_t> found_;                // scratch
