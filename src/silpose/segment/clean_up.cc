@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kMinBlob = 0.0005;    // of the picture
 constexpr double kLeastCovered = 0.3;  // of an expected silhouette
+// What belongs to a blob though it is apart from it: gap, of the blob's height; sizes, of its area.
+constexpr double kPartGap = 0.04, kLeastPart = 0.005, kLargestPart = 0.3;
 
 // Where a set pixel lies within `radius`.
 cv::Mat within(const cv::Mat& mat, int radius) {
@@ -46,6 +48,33 @@ cv::Mat where_expected(const Mask& expected, const cv::Rect& part) {
   const cv::Mat grown = within(mat_from_mask(expected)(around), margin);
   grown(common - around.tl()).copyTo(near(common - part.tl()));
   return near;
+}
+
+// The blob `best`, and what is too large for noise and too small for somebody else and lies close to it: a head, a
+// hand, that a sleeve or a neck of the background's colour cuts off. `labels` [h, w] of the pixels set in `mat`.
+std::vector<bool> parts_near(const cv::Mat& mat, const cv::Mat& labels, const std::vector<int64_t>& area, size_t best) {
+  std::vector<bool> is_kept(area.size(), false);
+  is_kept[best] = true;
+  const auto is_part = [&](size_t label) {
+    const auto size = static_cast<double>(area[label]), whole = static_cast<double>(area[best]);
+    return label != best && size >= kLeastPart * whole && size <= kLargestPart * whole;
+  };
+  bool has_parts = false;
+  for (size_t label = 1; label < area.size(); ++label) has_parts = has_parts || is_part(label);
+  if (!has_parts) return is_kept;
+  const cv::Mat blob = (labels == static_cast<int>(best)) & mat;
+  const cv::Rect box = cv::boundingRect(blob);
+  const int gap = static_cast<int>(std::lround(kPartGap * box.height));
+  const cv::Rect around = cv::Rect(box.x - gap, box.y - gap, box.width + 2 * gap, box.height + 2 * gap) &
+                          cv::Rect(0, 0, mat.cols, mat.rows);
+  const cv::Mat near = within(blob(around), gap) & mat(around), near_labels = labels(around);
+  for (int y = 0; y < near.rows; ++y) {
+    for (int x = 0; x < near.cols; ++x) {
+      const auto label = static_cast<size_t>(near_labels.at<int>(y, x));
+      if (near.at<uint8_t>(y, x) && !is_kept[label]) is_kept[label] = is_part(label);
+    }
+  }
+  return is_kept;
 }
 
 cv::Mat disc(int radius) {
@@ -171,9 +200,9 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Ma
   }
   if (best == 0) return blob;
   if (static_cast<double>(covered) < kLeastCovered * static_cast<double>(expected.count()) || covered == 0) {
-    is_kept.assign(count, false);
-    is_kept[best] = true;
-    covered = area[best];
+    is_kept = parts_near(mat, labels, area, best);
+    covered = 0;
+    for (size_t label = 1; label < count; ++label) covered += is_kept[label] ? area[label] : 0;
   }
   Mask part(mat.cols, mat.rows);
   for (int y = 0; y < mat.rows; ++y) {

@@ -151,5 +151,21 @@ TEST(Grow, ByADiscBothWays) {
   EXPECT_EQ(grow(mask_from_text("###\n###\n###"), -1).count(), 9) << "the border does not shrink it";
 }
 
+TEST(ChooseBlob, KeepsPartsThatAreCutOffButNoCrumbsAndNobodyElse) {
+  const auto fill = [](Mask& mask, const Box& box) {
+    for (int y = box.y; y < box.y + box.height; ++y) {
+      for (int x = box.x; x < box.x + box.width; ++x) mask.set(x, y);
+    }
+  };
+  Mask person(200, 200);
+  fill(person, {80, 60, 40, 100});
+  fill(person, {92, 43, 14, 14});  // the head: 3 above, 4.9 % of the size
+  Mask all = person;
+  fill(all, {123, 100, 3, 3});   // a crumb beside it
+  fill(all, {140, 60, 20, 30});  // too far
+  fill(all, {30, 60, 47, 60});   // near, and somebody
+  EXPECT_EQ(choose_blob(all, {.join_gap = 0}), person);
+}
+
 }  // namespace
 }  // namespace silpose

@@ -1,8 +1,11 @@
 #include "silpose/segment/edge_matte.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <vector>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
@@ -12,11 +15,23 @@ namespace silpose {
 namespace {
 
 constexpr double kBand = 0.02;  // of the larger side of the mask's box
-// Distance from the edge, px: up to the first a pixel is no sample of its side, from their sum on a whole one.
+// Distance from the edge, px: up to the first a pixel is no sample of the scene, from their sum on a whole one.
 constexpr float kUnsureRim = 1.5f, kRim = 3;
+// The subject's colour at its edge is that of the nearest pixels this deep inside it, averaged over so many: deep at
+// first, as the mask that is given may be too wide, and close to the edge the second time. What is thin is not deep.
+struct SampleRule {
+  float depth;
+  int reach;  // pixels on either side
+};
+constexpr std::array<SampleRule, 2> kRounds = {SampleRule{2.5f, 2}, SampleRule{2, 1}};
+constexpr float kThinDepth = 1.2f;
+constexpr float kFarthest = 4;   // px beyond the band, of a sample
+constexpr float kStray = 16;     // grey levels that a pixel may lie beside the line between the two sides' colours
 constexpr float kContrast = 12;  // grey levels between the two sides' colours at which picture and mask count alike
 constexpr float kMisfit = 4;     // how much a background that does not fit counts against the picture
 constexpr float kLeastWeight = 1e-4f, kDarkest = 0.4f, kBrightest = 1.5f;
+
+float square(float x) { return x * x; }
 
 cv::Mat sample_weight(const cv::Mat& distance) {
   cv::Mat weight = (distance - kUnsureRim) / kRim;
@@ -28,21 +43,48 @@ void average(cv::Mat& sums, int window) {
   cv::boxFilter(sums, sums, CV_32F, {window, window}, {-1, -1}, true, cv::BORDER_CONSTANT);
 }
 
-// Around each pixel the mean of weight * colour, and of weight as the fourth channel.
-cv::Mat local_mean(const cv::Mat& colours, const cv::Mat& weight, int window) {
-  cv::Mat sums(colours.size(), CV_32FC4);
-  for (int y = 0; y < colours.rows; ++y) {
-    const auto* c = colours.ptr<cv::Vec3b>(y);
-    const auto* w = weight.ptr<float>(y);
-    auto* to = sums.ptr<cv::Vec4f>(y);
-    for (int x = 0; x < colours.cols; ++x) {
-      const auto luma = static_cast<float>(c[x][0]), cr = static_cast<float>(c[x][1]), cb = static_cast<float>(c[x][2]);
-      to[x] = {w[x] * luma, w[x] * cr, w[x] * cb, w[x]};
+// The colour of the pixels next to each that are `depth` or more inside the subject.
+class NearestColour {
+ public:
+  NearestColour(const cv::Mat& seen, const cv::Mat& inside, float depth, int reach)
+      : seen_(seen), is_sample_(inside >= depth), reach_(reach) {
+    cv::distanceTransform(is_sample_ == 0, distance_, labels_, cv::DIST_L2, cv::DIST_MASK_5, cv::DIST_LABEL_PIXEL);
+    for (int y = 0; y < seen.rows; ++y) {
+      for (int x = 0; x < seen.cols; ++x) {
+        if (!is_sample_.at<uint8_t>(y, x)) continue;
+        const auto label = static_cast<size_t>(labels_.at<int>(y, x));
+        if (label >= places_.size()) places_.resize(label + 1);
+        places_[label] = {x, y};
+      }
     }
   }
-  average(sums, window);
-  return sums;
-}
+
+  // Whether there is none within `farthest` somewhere in a region [h, w].
+  [[nodiscard]] bool misses(const cv::Mat& region, float farthest) const {
+    return places_.empty() || cv::countNonZero(region & (distance_ > farthest)) > 0;
+  }
+
+  // Absent where there is none within `farthest`.
+  [[nodiscard]] std::optional<cv::Vec3f> at(int x, int y, float farthest) const {
+    if (places_.empty() || distance_.at<float>(y, x) > farthest) return std::nullopt;
+    const cv::Point place = places_[static_cast<size_t>(labels_.at<int>(y, x))];
+    cv::Vec3f sum(0, 0, 0);
+    float count = 0;
+    for (int v = std::max(place.y - reach_, 0); v <= std::min(place.y + reach_, seen_.rows - 1); ++v) {
+      for (int u = std::max(place.x - reach_, 0); u <= std::min(place.x + reach_, seen_.cols - 1); ++u) {
+        if (!is_sample_.at<uint8_t>(v, u)) continue;
+        sum += cv::Vec3f(seen_.at<cv::Vec3b>(v, u));
+        ++count;
+      }
+    }
+    return sum / count;
+  }
+
+ private:
+  cv::Mat seen_, is_sample_, distance_, labels_;
+  std::vector<cv::Point> places_;  // of labels
+  int reach_;
+};
 
 // How the scene around each pixel, as far as it is seen now, compares with the background.
 struct SceneNow {
@@ -78,6 +120,65 @@ struct SceneNow {
   }
 };
 
+// Where a mask's edge may be, and what is around it; the same however often the edge is moved within it.
+struct EdgeScene {
+  cv::Rect part;         // of the picture
+  int band;              // px
+  cv::Mat seen, behind;  // [h, w, 3] of the part
+  cv::Mat known;         // [h, w] of the part; empty: everywhere
+  SceneNow now;
+};
+
+// Moves the edge of `mask` [h, w], of the part; `sure` [h, w] becomes less where it does not know.
+void move_edge(const EdgeScene& scene, const SampleRule& rule, cv::Mat& mask, cv::Mat& sure) {
+  cv::Mat inside, outside, near_mask, matte;
+  cv::distanceTransform(mask, inside, cv::DIST_L2, cv::DIST_MASK_3);
+  cv::distanceTransform(mask == 0, outside, cv::DIST_L2, cv::DIST_MASK_3);
+  cv::boxFilter(mask, near_mask, CV_32F, {3, 3});
+  mask.convertTo(matte, CV_32F, 1.0 / 255);
+  const cv::Mat depth = cv::max(inside, outside);
+  const NearestColour deep(scene.seen, inside, rule.depth, rule.reach);
+  std::optional<NearestColour> thin;  // seldom needed, and not before the mask is about right
+  const float farthest = static_cast<float>(scene.band) + kFarthest;
+  if (&rule == &kRounds.back() && deep.misses(depth <= scene.band, farthest))
+    thin.emplace(scene.seen, inside, kThinDepth, rule.reach);
+  parallel_for(static_cast<size_t>(mask.rows), 16, [&](size_t begin, size_t end) {
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      for (int x = 0; x < mask.cols; ++x) {
+        if (depth.at<float>(y, x) > static_cast<float>(scene.band)) continue;
+        if (!scene.known.empty() && !scene.known.at<uint8_t>(y, x)) continue;
+        std::optional<cv::Vec3f> of_subject = deep.at(x, y, farthest);
+        if (!of_subject && thin) of_subject = thin->at(x, y, farthest);
+        if (!of_subject) continue;
+        const auto [light, misfit] = scene.now.at(x, y);
+        // From the background towards the subject's colour; what lies beside that line is another colour of the
+        // subject, as far as it is no noise. Noise in the background alone must not count: it would widen the mask.
+        float along = 0, away = 0, apart = 0;
+        for (int c = 0; c < 3; ++c) {
+          const float centre = c == 0 ? 0.0f : 128.0f;
+          const float empty = centre + light * (static_cast<float>(scene.behind.at<cv::Vec3b>(y, x)[c]) - centre);
+          const float pixel = static_cast<float>(scene.seen.at<cv::Vec3b>(y, x)[c]) - empty;
+          const float whole = (*of_subject)[c] - empty;
+          along += pixel * whole;
+          away += pixel * pixel;
+          apart += whole * whole;
+        }
+        apart = std::max(apart, 1.0f);
+        const float towards = along / apart;
+        const float beside = std::max(away - towards * along - kStray * kStray, 0.0f) / apart;
+        const float part_covered = std::min(std::sqrt(square(std::max(towards, 0.0f)) + beside), 1.5f);
+        const float say = apart / (apart + kContrast * kContrast + kMisfit * misfit);
+        matte.at<float>(y, x) = say * part_covered + (1 - say) * near_mask.at<float>(y, x) / 255;
+        const bool agrees = (matte.at<float>(y, x) > 0.5f) == (mask.at<uint8_t>(y, x) != 0);
+        const float here = say * std::min(2 * std::abs(part_covered - 0.5f), 1.0f) * (agrees ? 1.0f : 0.5f);
+        sure.at<float>(y, x) = std::min(sure.at<float>(y, x), here);
+      }
+    }
+  });
+  cv::GaussianBlur(matte, matte, {3, 3}, 0.7);
+  mask = matte > 0.5;
+}
+
 }  // namespace
 
 EdgeMatte refine_edge(const Mask& mask, const ByteImage& luma_chroma, const ByteImage& background, const Mask* known) {
@@ -88,55 +189,24 @@ EdgeMatte refine_edge(const Mask& mask, const ByteImage& luma_chroma, const Byte
   const Box box = mask.bounding_box();
   if (box.empty()) return result;
   const int band = std::max(2, static_cast<int>(std::lround(kBand * std::max(box.width, box.height))));
-  const int room = 3 * band + 3, window = 4 * band + 1;
-  const int x0 = std::max(box.x - room, 0), y0 = std::max(box.y - room, 0);
-  const cv::Rect part(x0, y0, std::min(box.x + box.width + room, width) - x0,
-                      std::min(box.y + box.height + room, height) - y0);
+  const int room = 4 * band + 3, window = 4 * band + 1;
+  const cv::Rect part =
+      cv::Rect(box.x - room, box.y - room, box.width + 2 * room, box.height + 2 * room) & cv::Rect(0, 0, width, height);
   const auto part_of = [&](const ByteImage& image) {
     return cv::Mat(height, width, CV_8UC3, const_cast<uint8_t*>(image.pixels().data()))(part);
   };
-  const cv::Mat seen = part_of(luma_chroma), behind = part_of(background), before = mat_from_mask(mask)(part);
-  cv::Mat inside, outside, near_mask;
-  cv::distanceTransform(before, inside, cv::DIST_L2, cv::DIST_MASK_3);
-  cv::distanceTransform(before == 0, outside, cv::DIST_L2, cv::DIST_MASK_3);
-  cv::boxFilter(before, near_mask, CV_32F, {3, 3});
+  cv::Mat edge = mat_from_mask(mask)(part).clone(), known_part, outside;
+  if (known != nullptr) known_part = mat_from_mask(*known)(part);
+  cv::distanceTransform(edge == 0, outside, cv::DIST_L2, cv::DIST_MASK_3);
   cv::Mat of_scene = sample_weight(outside);
-  if (known != nullptr) of_scene.setTo(0, mat_from_mask(*known)(part) == 0);
-  const cv::Mat subject = local_mean(seen, sample_weight(inside), window);
-  const SceneNow scene(seen, behind, of_scene, window);
-
-  cv::Mat matte(part.size(), CV_32F), sure(part.size(), CV_32F, cv::Scalar(1));
-  before.convertTo(matte, CV_32F, 1.0 / 255);
-  parallel_for(static_cast<size_t>(part.height), 16, [&](size_t begin, size_t end) {
-    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (int x = 0; x < part.width; ++x) {
-        const float depth = std::max(inside.at<float>(y, x), outside.at<float>(y, x));
-        if (depth > static_cast<float>(band)) continue;
-        if (known != nullptr && !known->get(part.x + x, part.y + y)) continue;
-        const auto& of_subject = subject.at<cv::Vec4f>(y, x);
-        if (of_subject[3] < kLeastWeight) continue;
-        const auto [light, misfit] = scene.at(x, y);
-        float away = 0, apart = 0;  // squared: of the pixel from the background, of the subject from it
-        for (int c = 0; c < 3; ++c) {
-          const float centre = c == 0 ? 0.0f : 128.0f;
-          const float empty = centre + light * (static_cast<float>(behind.at<cv::Vec3b>(y, x)[c]) - centre);
-          const float pixel = static_cast<float>(seen.at<cv::Vec3b>(y, x)[c]) - empty;
-          const float whole = of_subject[c] / of_subject[3] - empty;
-          away += pixel * pixel;
-          apart += whole * whole;
-        }
-        const float part_covered = std::min(std::sqrt(away / std::max(apart, 1.0f)), 1.5f);
-        const float say = apart / (apart + kContrast * kContrast + kMisfit * misfit);
-        matte.at<float>(y, x) = say * part_covered + (1 - say) * near_mask.at<float>(y, x) / 255;
-        const bool agrees = (matte.at<float>(y, x) > 0.5f) == (before.at<uint8_t>(y, x) != 0);
-        sure.at<float>(y, x) = say * std::min(2 * std::abs(part_covered - 0.5f), 1.0f) * (agrees ? 1.0f : 0.5f);
-      }
-    }
-  });
-  cv::GaussianBlur(matte, matte, {3, 3}, 0.7);
+  if (known != nullptr) of_scene.setTo(0, known_part == 0);
+  const cv::Mat seen = part_of(luma_chroma), behind = part_of(background);
+  const EdgeScene scene{part, band, seen, behind, known_part, SceneNow(seen, behind, of_scene, window)};
+  cv::Mat sure(part.size(), CV_32F, cv::Scalar(1));
+  for (const SampleRule& rule : kRounds) move_edge(scene, rule, edge, sure);
   for (int y = 0; y < part.height; ++y) {
     for (int x = 0; x < part.width; ++x) {
-      result.mask.set(part.x + x, part.y + y, matte.at<float>(y, x) > 0.5f);
+      result.mask.set(part.x + x, part.y + y, edge.at<uint8_t>(y, x) != 0);
       result.confidence.at(part.x + x, part.y + y) = static_cast<uint8_t>(std::lround(255 * sure.at<float>(y, x)));
     }
   }

@@ -54,6 +54,20 @@ TEST_F(RefineEdge, AnotherBackgroundHasLittleSay) {
   EXPECT_GT(intersection_over_union(refine_edge(truth, picture, other).mask, truth), 0.96);
 }
 
+TEST_F(RefineEdge, ASleeveSaysNothingOfTheHand) {
+  // The lower rows have another colour, which lies on the other side of the background's; the mask is right.
+  ByteImage dressed = picture;
+  for (int y = 80; y < 90; ++y) {
+    for (int x = 60; x < 84; ++x) {
+      dressed.at(x, y, 0) = 170;
+      dressed.at(x, y, 1) = 160;
+      dressed.at(x, y, 2) = 110;
+    }
+  }
+  const Mask found = refine_edge(truth, dressed, empty).mask;
+  EXPECT_GT(intersection_over_union(found, truth), 0.985) << text_from_mask(found);
+}
+
 TEST_F(RefineEdge, SureOnlyWhereTheColoursTell) {
   ByteImage alike = picture;  // the subject's right half looks like what is behind it
   for (int y = 30; y < 90; ++y) {

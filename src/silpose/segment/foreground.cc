@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "silpose/base/parallel.h"
+#include "silpose/segment/cast_shadow.h"
 
 namespace silpose {
 namespace {
@@ -15,6 +16,11 @@ constexpr int kBlock = 16;  // pixels
 // A pixel is foreground by itself from this chi-square distance on (3 channels). With noise of 3 grey levels that is
 // where the background's Gaussian falls below a foreground of any colour, equally likely.
 constexpr float kThreshold = 22;
+// A small difference that a whole window shows counts as well. Noise of coded video is alike in neighbours: the mean of
+// nine pixels has half the variance of one, not a ninth.
+constexpr int kWindow = 3;
+// Not where the pixel itself shows next to nothing: there the window looks over the subject's edge.
+constexpr float kWindowWeight = 2, kWindowMost = 10;
 // Evidence of one pixel is bounded, so that neighbours can outvote it.
 constexpr float kMaxAgainst = 4, kMaxFor = 6;
 // Shadows darken to a third at most: the deviation of the factor. Light thrown back brightens far less.
@@ -28,12 +34,19 @@ constexpr float kTextureWeight = 3;
 constexpr float kNeighbours = 4, kContrast = 12;
 constexpr int kIterations = 4;
 // A shadow lies beside the subject; "shadow" with more than this part of its outline against the subject is the
-// subject.
-constexpr double kEnclosed = 0.4;
+// subject. More is asked of what find_cast_shadow() marks, most of that on the floor: feet stand in their shadow.
+constexpr double kEnclosed = 0.25, kEnclosedCast = 0.4, kEnclosedOnFloor = 0.8;
 // Confidence: beliefs from this on are sure; what is shadow or subject is a guess.
 constexpr float kSureBelief = 0.5f, kSureOfShadow = 0.4f;
 
 float square(float x) { return x * x; }
+
+ByteImage window_mean(const ByteImage& image) {
+  ByteImage mean(image.width(), image.height(), 3);
+  cv::blur(cv::Mat(image.height(), image.width(), CV_8UC3, const_cast<uint8_t*>(image.pixels().data())),
+           cv::Mat(image.height(), image.width(), CV_8UC3, mean.pixels().data()), {kWindow, kWindow});
+  return mean;
+}
 
 // tanh(x / 2), near enough.
 float squash(float x) { return x / (1.5f + std::abs(x)); }
@@ -66,7 +79,8 @@ ForegroundFinder::ForegroundFinder(BackgroundModel model)
   for (size_t i = 0; i < pixels; ++i) {
     for (size_t c = 0; c < 3; ++c) inverse_noise_[c * pixels + i] = 1 / square(model_.noise.pixels()[3 * i + c]);
   }
-  differs_.resize(pixels);
+  window_back_ = window_mean(model_.median);
+  differs_ = ByteImage(model_.width(), model_.height());
   texture_.resize(pixels);
   const size_t size = stride_ * (static_cast<size_t>(model_.height()) + 2);
   for (auto* field : {&evidence_, &belief_, &next_, &right_, &down_, &down_right_, &down_left_}) field->assign(size, 0);
@@ -108,17 +122,27 @@ void ForegroundFinder::compare_texture(const ByteImage& luma_chroma) {
 }
 
 // Half the chi-square distance above the threshold, bounded.
-void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma) {
-  const float gain = exposure_gain(model_, luma_chroma);
-  const size_t width = static_cast<size_t>(model_.width()), pixels = differs_.size();
+void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma, float gain) {
+  const ByteImage window_seen = window_mean(luma_chroma);
+  const size_t width = static_cast<size_t>(model_.width()), pixels = texture_.size();
   parallel_for(static_cast<size_t>(model_.height()), kBlock, [&](size_t begin, size_t end) {
-    std::vector<float> planes(7 * width);
+    std::vector<float> planes(10 * width);
     float *seen_y = planes.data(), *seen_r = seen_y + width, *seen_b = seen_r + width;
     float *back_y = seen_b + width, *back_r = back_y + width, *back_b = back_r + width, *least = back_b + width;
+    float *around_y = least + width, *around_r = around_y + width, *around_b = around_r + width;
     for (size_t y = begin; y < end; ++y) {
       const uint8_t* pixel = luma_chroma.row(static_cast<int>(y)).data();
       const uint8_t* background = model_.median.row(static_cast<int>(y)).data();
+      const uint8_t* window = window_seen.row(static_cast<int>(y)).data();
+      const uint8_t* window_back = window_back_.row(static_cast<int>(y)).data();
       for (size_t x = 0; x < width; ++x) {
+        const auto apart = [&](size_t c, float centre) {
+          return static_cast<float>(window[3 * x + c]) - centre -
+                 gain * (static_cast<float>(window_back[3 * x + c]) - centre);
+        };
+        around_y[x] = apart(0, 0);
+        around_r[x] = apart(1, 128);
+        around_b[x] = apart(2, 128);
         seen_y[x] = pixel[3 * x];
         seen_r[x] = static_cast<float>(pixel[3 * x + 1]) - 128;
         seen_b[x] = static_cast<float>(pixel[3 * x + 2]) - 128;
@@ -130,7 +154,7 @@ void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma) {
       const float *weight_r = weight_y + pixels, *weight_b = weight_r + pixels;
       float* evidence = &evidence_[(y + 1) * stride_ + 1];
       float* belief = &belief_[(y + 1) * stride_ + 1];
-      uint8_t* differs = &differs_[y * width];
+      uint8_t* differs = differs_.row(static_cast<int>(y)).data();
       // The least of the windows that hold the pixel: those beside it keep clear of the subject's edge.
       const size_t above = y >= kReach ? y - kReach : y,
                    below = std::min(y + kReach, static_cast<size_t>(model_.height()) - 1);
@@ -138,8 +162,11 @@ void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma) {
         least[x] = std::min({texture_[above * width + x], texture_[y * width + x], texture_[below * width + x]});
       }
       for (size_t x = 0; x < width; ++x) {
-        const float plain = square(seen_y[x] - back_y[x]) * weight_y[x] + square(seen_r[x] - back_r[x]) * weight_r[x] +
-                            square(seen_b[x] - back_b[x]) * weight_b[x];
+        const float here = square(seen_y[x] - back_y[x]) * weight_y[x] + square(seen_r[x] - back_r[x]) * weight_r[x] +
+                           square(seen_b[x] - back_b[x]) * weight_b[x];
+        const float around =
+            square(around_y[x]) * weight_y[x] + square(around_r[x]) * weight_r[x] + square(around_b[x]) * weight_b[x];
+        const float plain = std::max(here, std::min(kWindowWeight * around, kWindowMost * here));
         const float factor = std::min(seen_y[x] / std::max(back_y[x], 1.0f), 1.5f);
         const float deviation = factor < 1 ? 1 / kShadowDeviation : 1 / kGlowDeviation;
         float shadow = square((factor - 1) * deviation) + square(seen_r[x] - factor * back_r[x]) * weight_r[x] +
@@ -167,6 +194,20 @@ void ForegroundFinder::add_evidence(const Image<float>& others) {
       }
     }
   });
+}
+
+void ForegroundFinder::take_out_shadow(const ByteImage& luma_chroma, float gain) {
+  cast_ = find_cast_shadow(model_, luma_chroma, gain, differs_);
+  for (int y = 0; y < model_.height(); ++y) {
+    const std::span<const uint8_t> is_shadow = cast_.shadow.row(y);
+    float *evidence = &evidence_[(static_cast<size_t>(y) + 1) * stride_ + 1],
+          *belief = &belief_[(static_cast<size_t>(y) + 1) * stride_ + 1];
+    for (size_t x = 0; x < is_shadow.size(); ++x) {
+      if (is_shadow[x] == 0) continue;
+      evidence[x] = -kMaxAgainst;
+      belief[x] = squash(-kMaxAgainst);
+    }
+  }
 }
 
 // Blocks with a pixel that may be foreground, and those around them: elsewhere nothing can change.
@@ -271,18 +312,21 @@ void ForegroundFinder::keep_enclosed_shadows(Mask& mask) const {
   const int width = model_.width(), height = model_.height();
   cv::Mat shadow(height, width, CV_8U, cv::Scalar(0));
   for_each_run([&](int x0, int x1, int y) {
-    const uint8_t* differs = &differs_[static_cast<size_t>(y) * static_cast<size_t>(width)];
+    const uint8_t* differs = differs_.row(y).data();
     for (int x = x0; x < x1; ++x) shadow.at<uint8_t>(y, x) = differs[x] && !mask.get(x, y) ? 1 : 0;
   });
   cv::Mat labels;
   const int count = cv::connectedComponents(shadow, labels, 4, CV_32S);
   if (count == 1) return;
-  std::vector<int64_t> against_subject(static_cast<size_t>(count), 0), outline(static_cast<size_t>(count), 0);
+  const std::vector<int64_t> none(static_cast<size_t>(count), 0);
+  std::vector<int64_t> against_subject = none, outline = none, area = none, cast = none, on_floor = none;
   for (int y = 0; y < height; ++y) {
     const int* row = labels.ptr<int>(y);
     for (int x = 0; x < width; ++x) {
       if (row[x] == 0) continue;
       const auto label = static_cast<size_t>(row[x]);
+      ++area[label];
+      if (cast_.shadow.at(x, y) != 0) ++(y >= cast_.floor_row ? on_floor : cast)[label];
       constexpr int kSteps[4][2] = {{-1, 0}, {1, 0}, {0, -1}, {0, 1}};
       for (const auto& step : kSteps) {
         const int u = x + step[0], v = y + step[1];
@@ -297,7 +341,11 @@ void ForegroundFinder::keep_enclosed_shadows(Mask& mask) const {
     const int* row = labels.ptr<int>(y);
     for (int x = 0; x < width; ++x) {
       const auto label = static_cast<size_t>(row[x]);
-      if (label != 0 && static_cast<double>(against_subject[label]) > kEnclosed * static_cast<double>(outline[label])) {
+      if (label == 0) continue;
+      const double enclosed = 2 * on_floor[label] > area[label] ? kEnclosedOnFloor
+                              : 2 * cast[label] > area[label]   ? kEnclosedCast
+                                                                : kEnclosed;
+      if (static_cast<double>(against_subject[label]) > enclosed * static_cast<double>(outline[label])) {
         mask.set(x, y);
       }
     }
@@ -308,11 +356,12 @@ ByteImage ForegroundFinder::confidence(const Mask& found) const {
   ByteImage confidence(model_.width(), model_.height(), 1, 255);
   for_each_run([&](int x0, int x1, int y) {
     const float* belief = &belief_[(static_cast<size_t>(y) + 1) * stride_ + 1];
-    const uint8_t* differs = &differs_[static_cast<size_t>(y) * static_cast<size_t>(model_.width())];
+    const uint8_t* differs = differs_.row(y).data();
     for (int x = x0; x < x1; ++x) {
       float sure = std::min(std::abs(belief[x]) / kSureBelief, 1.0f);
       if (differs[x] && !found.get(x, y)) sure = std::min(sure, kSureOfShadow);
       if (belief[x] <= 0 && found.get(x, y)) sure = std::min(sure, kSureOfShadow);
+      if (found.get(x, y) && cast_.looks_like.at(x, y) != 0) sure = std::min(sure, kSureOfShadow);
       confidence.at(x, y) = static_cast<uint8_t>(255 * sure);
     }
   });
@@ -323,8 +372,10 @@ Mask ForegroundFinder::find(const ByteImage& luma_chroma, const Image<float>* ot
   check(luma_chroma.width() == model_.width() && luma_chroma.height() == model_.height() && luma_chroma.channels() == 3,
         "ForegroundFinder: picture {}x{}x{}, background {}x{}", luma_chroma.width(), luma_chroma.height(),
         luma_chroma.channels(), model_.width(), model_.height());
+  const float gain = exposure_gain(model_, luma_chroma);
   compare_texture(luma_chroma);
-  weigh_evidence(luma_chroma);
+  weigh_evidence(luma_chroma, gain);
+  take_out_shadow(luma_chroma, gain);
   if (others != nullptr) {
     check(others->width() == model_.width() && others->height() == model_.height(),
           "ForegroundFinder: other evidence of {}x{}", others->width(), others->height());

@@ -11,6 +11,7 @@
 #include "silpose/image/image.h"
 #include "silpose/image/mask.h"
 #include "silpose/segment/background_model.h"
+#include "silpose/segment/cast_shadow.h"
 
 namespace silpose {
 
@@ -29,7 +30,8 @@ class ForegroundFinder {
 
  private:
   void compare_texture(const ByteImage& luma_chroma);
-  void weigh_evidence(const ByteImage& luma_chroma);
+  void weigh_evidence(const ByteImage& luma_chroma, float gain);
+  void take_out_shadow(const ByteImage& luma_chroma, float gain);
   void add_evidence(const Image<float>& others);
   void choose_blocks();
   void tie_neighbours(const ByteImage& luma_chroma);
@@ -42,8 +44,10 @@ class ForegroundFinder {
   size_t stride_ = 0;  // of the fields below: one pixel more than the picture on every side
   int blocks_x_ = 0, blocks_y_ = 0;
   std::vector<float> inverse_noise_;  // [3, H, W] 1 / variance
+  ByteImage window_back_;             // [H, W, 3] mean of the median around each pixel
   std::vector<float> texture_;        // [H, W] what a scaled background leaves of the luma around, as variance
-  std::vector<uint8_t> differs_;      // would be foreground if there were no shadows
+  ByteImage differs_;                 // [H, W] would be foreground if there were no shadows
+  CastShadow cast_;                   // of the last picture
   std::vector<uint8_t> chosen_;       // [blocks_y, blocks_x] where anything may be foreground
   std::vector<float> evidence_, belief_, next_;               // positive speaks for foreground
   std::vector<float> right_, down_, down_right_, down_left_;  // ties to the neighbour there; 0 between pictures
