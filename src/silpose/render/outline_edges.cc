@@ -1,7 +1,6 @@
 #include "silpose/render/outline_edges.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "silpose/base/check.h"
 
@@ -10,28 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#ifndef SILPOSE_RENDER_OUTLINE_EDGES_TYPES
-#define SILPOSE_RENDER_OUTLINE_EDGES_TYPES
-namespace silpose {
-namespace {
-
-// What the kernels see: nothing but pointers, so that no code of a library is compiled for one instruction set only.
-struct StripView {
-  const StripOrder::Run* runs;
-  size_t num_runs;
-  const StripOrder::Pair* pairs;
-  size_t num_pairs;
-};
-
-uint64_t load_word(const uint8_t* bytes) {
-  uint64_t word;
-  std::memcpy(&word, bytes, sizeof word);
-  return word;
-}
-
-}  // namespace
-}  // namespace silpose
-#endif
+// After highway.h.
+#include "silpose/render/strip_edges-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace silpose {
@@ -86,58 +65,14 @@ void lay_strips(const GridPoint* HWY_RESTRICT points, const uint32_t* HWY_RESTRI
   }
 }
 
-// The edges between two faces that are turned to different sides. Returns how many; from and to have room for 3 more.
-// Free of branches that depend on the data, but for runs with more than four of them: neither is predictable.
+// Returns how many; from and to have room for 3 more.
 size_t find_inner_edges(const StripView& strips, const GridPoint* HWY_RESTRICT point,
                         const uint8_t* HWY_RESTRICT winding, uint64_t* HWY_RESTRICT found, GridPoint* HWY_RESTRICT from,
                         GridPoint* HWY_RESTRICT to) {
-  constexpr uint64_t kNoneLeft = uint64_t{1} << 63;  // no run is as long
-  size_t num_found = 0;
-  for (size_t r = 0; r < strips.num_runs; ++r) {
-    const StripOrder::Run& run = strips.runs[r];
-    const uint64_t first = load_word(winding + run.first / 8);
-    const uint64_t other = load_word(winding + run.other / 8) >> (run.other % 8);
-    const uint64_t differ = (first ^ other ^ run.expected) & run.mask;
-    found[3 * num_found] = differ;
-    found[3 * num_found + 1] = first;
-    found[3 * num_found + 2] = r;
-    num_found += static_cast<size_t>(differ != 0);
-  }
-  size_t count = 0;
-  for (size_t f = 0; f < num_found; ++f) {
-    uint64_t differ = found[3 * f];
-    const uint64_t first = found[3 * f + 1];
-    const StripOrder::Run& run = strips.runs[found[3 * f + 2]];
-    const GridPoint* const start = point + run.first + StripOrder::kSide[run.side][0];
-    const auto along = static_cast<int64_t>(StripOrder::kSide[run.side][1]) - StripOrder::kSide[run.side][0];
-    const size_t end = count + hwy::PopCount(differ);
-    do {
-      for (size_t i = 0; i < 4; ++i) {
-        const auto bit = static_cast<uint32_t>(__builtin_ctzll(differ | kNoneLeft));  // read, not kept
-        const int64_t turned = -static_cast<int64_t>(first >> bit & 1);
-        from[count + i] = start[bit + (along & turned)];
-        to[count + i] = start[bit + (along & ~turned)];
-        differ &= differ - 1;
-      }
-      count += 4;
-    } while (count < end);
-    count = end;
-  }
-  size_t num_pairs = 0;
-  for (size_t i = 0; i < strips.num_pairs; ++i) {
-    const StripOrder::Pair pair = strips.pairs[i];
-    const uint32_t first = pair.first(), other = pair.other();
-    const uint32_t first_winding = winding[first / 8] >> (first % 8) & 1;
-    const uint32_t other_winding = winding[other / 8] >> (other % 8);
-    found[num_pairs] = uint64_t{pair.first_and_side} << 1 | first_winding;
-    num_pairs += (first_winding ^ other_winding ^ pair.other_and_expected) & 1;
-  }
-  for (size_t i = 0; i < num_pairs; ++i) {
-    const uint64_t turned = found[i] & 1, side = found[i] >> 1 & 3, first = found[i] >> 3;
-    from[count] = point[first + StripOrder::kSide[side][turned]];
-    to[count++] = point[first + StripOrder::kSide[side][turned ^ 1]];
-  }
-  return count;
+  return find_strip_edges(strips, winding, found, [&](size_t i, size_t begin, size_t end) HWY_ATTR {
+    from[i] = point[begin];
+    to[i] = point[end];
+  });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -189,12 +124,8 @@ void OutlineEdges::find(std::span<const GridPoint> points, bool some_unseen) {
   const StripOrder& strips = topology_->strips;
   HWY_DYNAMIC_DISPATCH(lay_strips)
   (points.data(), strips.vertex.data(), strips.num_positions, strip_points_.data(), winding_.data());
-  const StripView view{.runs = strips.runs.data(),
-                       .num_runs = strips.runs.size(),
-                       .pairs = strips.pairs.data(),
-                       .num_pairs = strips.pairs.size()};
-  inner_.count = HWY_DYNAMIC_DISPATCH(find_inner_edges)(view, strip_points_.data(), winding_.data(), found_.data(),
-                                                        inner_.from.data(), inner_.to.data());
+  inner_.count = HWY_DYNAMIC_DISPATCH(find_inner_edges)(view_of(strips), strip_points_.data(), winding_.data(),
+                                                        found_.data(), inner_.from.data(), inner_.to.data());
   for (const StripOrder::Border& border : strips.borders) {
     const size_t first = winding_[border.position / 8] >> (border.position % 8) & 1;
     push(border_, strip_points_[border.position + StripOrder::kSide[border.side][first]],

@@ -1,7 +1,6 @@
 #include "silpose/render/outline_spans.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "silpose/base/check.h"
@@ -12,23 +11,8 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
-#ifndef SILPOSE_RENDER_OUTLINE_SPANS_ONCE
-#define SILPOSE_RENDER_OUTLINE_SPANS_ONCE
-namespace silpose {
-namespace {
-
-// What the kernels see: nothing but pointers, so that no code of a library is compiled for one instruction set only.
-struct StripView {
-  const uint32_t* vertex;
-  const StripOrder::Run* runs;
-  size_t num_runs;
-  const StripOrder::Pair* pairs;
-  size_t num_pairs;
-};
-
-}  // namespace
-}  // namespace silpose
-#endif
+// After highway.h.
+#include "silpose/render/strip_edges-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace silpose::HWY_NAMESPACE {
@@ -68,60 +52,13 @@ void find_winding_of_floats(const float* HWY_RESTRICT xy, size_t num_positions, 
 #endif
 }
 
-// The edges between two faces that are turned to different sides. Returns how many; `outline` has room for 3 more. Free
-// of branches that depend on the data, but for runs with more than four of them.
-size_t find_inner_outline(const StripView& strips, const uint8_t* HWY_RESTRICT winding, uint64_t* HWY_RESTRICT found,
+// Returns how many; `outline` has room for 3 more. `vertex` is StripOrder's.
+size_t find_inner_outline(const StripView& strips, const uint32_t* HWY_RESTRICT vertex,
+                          const uint8_t* HWY_RESTRICT winding, uint64_t* HWY_RESTRICT found,
                           OutlineSpans::OutlineEdge* HWY_RESTRICT outline) {
-  constexpr uint64_t kNoneLeft = uint64_t{1} << 63;  // no run is as long
-  const auto word_at = [&](uint32_t position) HWY_ATTR {
-    uint64_t word;
-    std::memcpy(&word, winding + position / 8, sizeof word);
-    return word;
-  };
-  size_t num_found = 0;
-  for (size_t r = 0; r < strips.num_runs; ++r) {
-    const StripOrder::Run& run = strips.runs[r];
-    const uint64_t first = word_at(run.first), other = word_at(run.other) >> (run.other % 8);
-    const uint64_t differ = (first ^ other ^ run.expected) & run.mask;
-    found[3 * num_found] = differ;
-    found[3 * num_found + 1] = first;
-    found[3 * num_found + 2] = r;
-    num_found += static_cast<size_t>(differ != 0);
-  }
-  size_t count = 0;
-  for (size_t f = 0; f < num_found; ++f) {
-    uint64_t differ = found[3 * f];
-    const uint64_t first = found[3 * f + 1];
-    const StripOrder::Run& run = strips.runs[found[3 * f + 2]];
-    const uint32_t* const start = strips.vertex + run.first + StripOrder::kSide[run.side][0];
-    const auto along = static_cast<int64_t>(StripOrder::kSide[run.side][1]) - StripOrder::kSide[run.side][0];
-    const size_t end = count + hwy::PopCount(differ);
-    do {
-      for (size_t i = 0; i < 4; ++i) {
-        const auto bit = static_cast<uint32_t>(__builtin_ctzll(differ | kNoneLeft));  // written, not kept
-        const int64_t turned = -static_cast<int64_t>(first >> bit & 1);
-        outline[count + i] = {start[bit + (along & turned)], start[bit + (along & ~turned)], 2};
-        differ &= differ - 1;
-      }
-      count += 4;
-    } while (count < end);
-    count = end;
-  }
-  size_t num_pairs = 0;
-  for (size_t i = 0; i < strips.num_pairs; ++i) {
-    const StripOrder::Pair pair = strips.pairs[i];
-    const uint32_t first = pair.first(), other = pair.other();
-    const uint32_t first_winding = winding[first / 8] >> (first % 8) & 1;
-    const uint32_t other_winding = winding[other / 8] >> (other % 8);
-    found[num_pairs] = uint64_t{pair.first_and_side} << 1 | first_winding;
-    num_pairs += (first_winding ^ other_winding ^ pair.other_and_expected) & 1;
-  }
-  for (size_t i = 0; i < num_pairs; ++i) {
-    const uint64_t turned = found[i] & 1, side = found[i] >> 1 & 3, first = found[i] >> 3;
-    outline[count++] = {strips.vertex[first + StripOrder::kSide[side][turned]],
-                        strips.vertex[first + StripOrder::kSide[side][turned ^ 1]], 2};
-  }
-  return count;
+  return find_strip_edges(strips, winding, found, [&](size_t i, size_t begin, size_t end) HWY_ATTR {
+    outline[i] = {vertex[begin], vertex[end], 2};
+  });
 }
 
 }  // namespace silpose::HWY_NAMESPACE
@@ -161,9 +98,8 @@ void OutlineSpans::find_outline(std::span<const Eigen::Vector2f> pixels) {
   for (size_t i = 0; i < strip_points_.size(); ++i) strip_points_[i] = pixels[strips.vertex[i]];
   HWY_DYNAMIC_DISPATCH(find_winding_of_floats)(strip_points_.data()->data(), strips.num_positions, winding_.data());
 
-  num_outline_ = HWY_DYNAMIC_DISPATCH(find_inner_outline)(
-      {strips.vertex.data(), strips.runs.data(), strips.runs.size(), strips.pairs.data(), strips.pairs.size()},
-      winding_.data(), found_.data(), outline_.data());
+  num_outline_ = HWY_DYNAMIC_DISPATCH(find_inner_outline)(view_of(strips), strips.vertex.data(), winding_.data(),
+                                                          found_.data(), outline_.data());
   for (const StripOrder::Border& border : strips.borders) {
     const size_t turned = winding_[border.position / 8] >> (border.position % 8) & 1;
     add_outline(strips.vertex[border.position + StripOrder::kSide[border.side][turned]],
