@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 #include <utility>
 
@@ -75,6 +76,9 @@ struct CoverageLikelihood::Impl {
   std::vector<PinholeCamera> cameras;
   std::vector<View> views;
   int rows_per_cell;
+
+  mutable std::mutex idle_mutex;
+  mutable std::vector<std::unique_ptr<Scratch::Impl>> idle;  // nobody works in them now
 };
 
 struct CoverageLikelihood::Scratch::Impl {
@@ -127,17 +131,29 @@ size_t CoverageLikelihood::Scratch::Impl::sort_ends() {
   return num_cells;
 }
 
-CoverageLikelihood::Scratch::Scratch(const CoverageLikelihood& likelihood)
-    : impl_(std::make_unique<Impl>(*likelihood.impl_)) {}
+CoverageLikelihood::Scratch::Scratch(const CoverageLikelihood& likelihood) : owner_(likelihood.impl_) {
+  {
+    const std::scoped_lock lock(owner_->idle_mutex);
+    if (!owner_->idle.empty()) {
+      impl_ = std::move(owner_->idle.back());
+      owner_->idle.pop_back();
+    }
+  }
+  if (!impl_) impl_ = std::make_unique<Impl>(*owner_);
+}
 CoverageLikelihood::Scratch::Scratch(Scratch&&) noexcept = default;
-CoverageLikelihood::Scratch::~Scratch() = default;
+CoverageLikelihood::Scratch::~Scratch() {
+  if (!impl_) return;  // moved from
+  const std::scoped_lock lock(owner_->idle_mutex);
+  owner_->idle.push_back(std::move(impl_));
+}
 
 CoverageLikelihood::CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras,
                                        int rows_per_cell) {
   check(rows_per_cell >= 1, "CoverageLikelihood: {} rows a cell", rows_per_cell);
   check(body != nullptr && !body->rest.faces.empty(), "CoverageLikelihood: no body");
   check(!cameras.empty(), "CoverageLikelihood: no camera");
-  impl_ = std::make_unique<const Impl>(std::move(body), std::move(cameras), rows_per_cell);
+  impl_ = std::make_shared<const Impl>(std::move(body), std::move(cameras), rows_per_cell);
 }
 CoverageLikelihood::~CoverageLikelihood() = default;
 

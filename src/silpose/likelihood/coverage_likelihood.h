@@ -70,6 +70,8 @@ struct NormalEquations {
 };
 
 class CoverageLikelihood {
+  struct Impl;
+
  public:
   // `rows_per_cell`: how finely the model's coverage is sampled; more make E smoother, and slower.
   CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras, int rows_per_cell = 2);
@@ -86,7 +88,7 @@ class CoverageLikelihood {
   [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32,
                                          Blur narrowest = Blur::k2) const;
 
-  // What evaluations work in; one a thread.
+  // What evaluations work in; one a thread. Given back to its likelihood in the end, for the next one: cheap to make.
   class Scratch {
    public:
     explicit Scratch(const CoverageLikelihood& likelihood);
@@ -96,6 +98,7 @@ class CoverageLikelihood {
    private:
     friend class CoverageLikelihood;
     struct Impl;
+    std::shared_ptr<const CoverageLikelihood::Impl> owner_;
     std::unique_ptr<Impl> impl_;
   };
 
@@ -125,8 +128,7 @@ class CoverageLikelihood {
   [[nodiscard]] std::span<const PinholeCamera> cameras() const;
 
  private:
-  struct Impl;
-  std::unique_ptr<const Impl> impl_;
+  std::shared_ptr<const Impl> impl_;
 };
 
 }  // namespace silpose

@@ -136,13 +136,17 @@ std::vector<Candidate> promising_variants(const Sight& sight, std::span<const Ca
   const Skeleton& skeleton = sight.body().skeleton;
   const std::vector<Limb> limbs = limbs_of(skeleton);
   const LimbSearchOptions search{options.num_random_limbs, options.num_fitted, kNovelty, kTwoAtOnce};
-  std::vector<Candidate> chosen;
-  for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
-    Rng rng(options.seed, stream, i);
-    for (const LimbVariant& variant :
-         promising_limbs(sight.likelihood, sight.evidence, limbs, view(starts[i].fit.pose), sight.eye, search, rng)) {
-      chosen.push_back(candidate_at(skeleton, variant.pose));
+  std::vector<std::vector<LimbVariant>> variants(std::min(starts.size(), static_cast<size_t>(options.num_varied)));
+  parallel_for(variants.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Rng rng(options.seed, stream, i);
+      variants[i] =
+          promising_limbs(sight.likelihood, sight.evidence, limbs, view(starts[i].fit.pose), sight.eye, search, rng);
     }
+  });
+  std::vector<Candidate> chosen;
+  for (const auto& of_start : variants) {
+    for (const LimbVariant& variant : of_start) chosen.push_back(candidate_at(skeleton, variant.pose));
   }
   return chosen;
 }

@@ -140,12 +140,18 @@ std::vector<MixtureFilter::Child> MixtureFilter::jumps_from(const CoverageEviden
   order.resize(std::min(order.size(), static_cast<size_t>(options_.num_parents)));
 
   const Eigen::Vector3d eye = fine_->cameras()[evidence.first_seen().value_or(0)].centre_in_world();
+  std::vector<std::vector<LimbVariant>> variants(order.size());
+  parallel_for(order.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Rng rng(options_.seed, steps_, order[i]);
+      variants[i] =
+          promising_limbs(*coarse_, evidence, limbs_, view(fitted[order[i]].fit.pose), eye, options_.limbs, rng);
+    }
+  });
   std::vector<Child> jumps;
-  for (const size_t p : order) {
-    const Child& parent = fitted[p];
-    Rng rng(options_.seed, steps_, p);
-    for (const LimbVariant& variant :
-         promising_limbs(*coarse_, evidence, limbs_, view(parent.fit.pose), eye, options_.limbs, rng)) {
+  for (size_t i = 0; i < order.size(); ++i) {
+    const Child& parent = fitted[order[i]];
+    for (const LimbVariant& variant : variants[i]) {
       Child child;
       child.component = parent.component;
       const Eigen::Index D = child.component.num_dofs();
