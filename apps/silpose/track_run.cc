@@ -8,6 +8,7 @@
 #include "apps/silpose/subject_fit.h"
 #include "sadb/store/memory_store.h"
 #include "silpose/base/clock.h"
+#include "silpose/base/job_line.h"
 #include "silpose/exchange/mot.h"
 #include "silpose/recording/track_recorder.h"
 #include "silpose/track/track_clip.h"
@@ -55,6 +56,7 @@ class TrackRun {
       if (!recording) return recording.failure();
       tracked_.recording = std::move(*recording);
     }
+    if (Result<void> done_writing = finish_writing(); !done_writing) return done_writing.failure();
     const Stopwatch writing;
     const Result<void> written = writer_.finish(tracked_.recording);
     if (!written) return written.failure();
@@ -120,8 +122,15 @@ class TrackRun {
     return {};
   }
 
+  // Until all files of the frames so far are written.
+  Result<void> finish_writing() {
+    Result<void> done = writing_.finish();
+    now_.seconds.write += writing_.take_seconds();
+    return done;
+  }
+
   Result<void> save(std::string tracker) {
-    if (source_.video().is_live()) return {};
+    if (Result<void> done = finish_writing(); !done || source_.video().is_live()) return done;
     const Stopwatch writing;
     now_.tracker = std::move(tracker);
     now_.source = source_.state();
@@ -135,7 +144,7 @@ class TrackRun {
   }
   [[nodiscard]] bool should_save() const { return Console::interrupted() || since_save_.seconds() > save_interval_s_; }
 
-  // The next frame, its masks written; nothing at the end or when asked to stop.
+  // The next frame; nothing at the end or when asked to stop.
   Result<std::optional<Instant>> next(std::string_view progress) {
     if (!console_.update(progress, now_.num_frames, source_.num_expected())) return std::optional<Instant>();
     Result<std::optional<Instant>> instant = source_.next();
@@ -146,11 +155,7 @@ class TrackRun {
     }
     now_.seconds.decode += now.decode_s;
     now_.seconds.segment += now.segment_s;
-    const Stopwatch writing;
     now_.last_picture = picture_checksum(now.frame);
-    const Result<void> written = writer_.add_masks(now.frame, now.observations);
-    now_.seconds.write += writing.seconds();
-    if (!written) return written.failure();
     return instant;
   }
 
@@ -180,12 +185,14 @@ class TrackRun {
       Instant& now = **instant;
       if (!tracker) tracker.emplace(tracker_options_);
       StepReport report = tracker->step(now.observations, now.frame.index, now.frame.time_ns);
-      const Stopwatch writing;
-      // A film cannot be gone on with: it is drawn in the end.
-      Result<void> drawn;
-      if (!is_resumed_) drawn = writer_.add_picture(std::move(now.frame.images[0]), report.time_ns, report.pose);
-      if (!drawn) return drawn;
-      now_.seconds.write += writing.seconds();
+      const auto seen = std::make_shared<Instant>(std::move(now));
+      Result<void> written = writing_.give([this, seen, pose = report.pose]() -> Result<void> {
+        Result<void> masks = writer_.add_masks(seen->frame, seen->observations);
+        // A film cannot be gone on with: it is drawn in the end.
+        if (!masks || is_resumed_) return masks;
+        return writer_.add_picture(std::move(seen->frame.images[0]), seen->frame.time_ns, pose);
+      });
+      if (!written) return written;
       if (Result<void> recorded = record(std::move(report)); !recorded) return recorded;
       if (!should_save()) continue;
       if (Result<void> saved = save(tracker->state()); !saved) return saved;
@@ -205,7 +212,11 @@ class TrackRun {
       Instant& now = **instant;
       std::vector<BesideMask>& beside = now_.seen.emplace_back();
       for (const Observation& seen : now.observations) beside.push_back({seen.trust, seen.landmarks});
-      clip_.push_back({now.frame.index, now.frame.time_ns, std::move(now.observations)});
+      clip_.push_back({now.frame.index, now.frame.time_ns, now.observations});
+      Result<void> written = writing_.give([this, seen = std::make_shared<Instant>(std::move(now))] {
+        return writer_.add_masks(seen->frame, seen->observations);
+      });
+      if (!written) return written;
       if (!should_save()) continue;
       if (Result<void> saved = save({}); !saved) return saved;
     }
@@ -271,7 +282,6 @@ class TrackRun {
 
   // The overlay, in a second pass over the pictures.
   Result<void> draw() {
-    const Stopwatch writing;
     Result<Video> video = open_video(options_.input.videos, options_.input.video_options());
     if (!video) return video.failure();
     const auto total = std::ssize(now_.reports);
@@ -281,12 +291,14 @@ class TrackRun {
       if (!frame->has_value()) return error("{}: ended earlier when it was read again", video->name());
       const StepReport& report = now_.reports[static_cast<size_t>(drawn)];
       if ((*frame)->index < report.frame_idx) continue;
-      Result<void> added = writer_.add_picture(std::move((*frame)->images[0]), report.time_ns, report.pose);
+      Result<void> added =
+          writing_.give([this, &report, picture = std::make_shared<ByteImage>(std::move((*frame)->images[0]))] {
+            return writer_.add_picture(std::move(*picture), report.time_ns, report.pose);
+          });
       if (!added) return added;
       ++drawn;
     }
-    now_.seconds.write += writing.seconds();
-    return {};
+    return finish_writing();
   }
 
   const TrackOptions& options_;
@@ -304,6 +316,7 @@ class TrackRun {
   Result<void> saved_;
   Stopwatch wall_, since_save_, smoothing_;
   double earlier_loop_s_ = 0, save_interval_s_ = kLeastInterval_s;
+  JobLine writing_;  // last: jobs use the rest
 };
 
 }  // namespace

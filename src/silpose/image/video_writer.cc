@@ -73,6 +73,7 @@ struct VideoWriter::Impl {
     encoder->gop_size = -1;     // the encoder's own
     encoder->thread_count = 1;  // the same bytes on any machine
     encoder->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+    av_opt_set(encoder->priv_data, "preset", "veryfast", 0);
     av_opt_set(encoder->priv_data, "crf", "23", 0);
     if (const int code = avcodec_open2(encoder.get(), codec, nullptr); code < 0) {
       return error("{}: {} by {} cannot be encoded ({})", name, even_width, even_height, ffmpeg_text(code));

@@ -1,0 +1,53 @@
+// JobLine: a thread that does one job after another while the thread that gives them goes on, such as writing a frame's
+// files while the next frame is computed. Jobs are done in the order they were given.
+// Threads: one thread gives jobs; what a job uses must not be used elsewhere until finish().
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "silpose/base/result.h"
+
+namespace silpose {
+
+class JobLine {
+ public:
+  using Job = std::function<Result<void>()>;
+
+  // `most_waiting`: given and not begun, before give() waits: it bounds the memory that they hold.
+  explicit JobLine(size_t most_waiting = 4);
+  JobLine(const JobLine&) = delete;
+  JobLine& operator=(const JobLine&) = delete;
+  ~JobLine();  // does what was given
+
+  // Errors: what an earlier job failed with, told once; none is done after it. What a job throws is thrown here.
+  Result<void> give(Job job);
+
+  // Waits until all jobs are done. Errors: as give().
+  Result<void> finish();
+
+  // How long jobs took since this was asked last. REQUIRES: finish() was called.
+  double take_seconds();
+
+ private:
+  void work();
+  Result<void> tell();
+
+  const size_t most_waiting_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<Job> waiting_;
+  bool is_busy_ = false, is_over_ = false, has_failed_ = false;
+  std::optional<Error> failure_;
+  std::exception_ptr thrown_;
+  double seconds_ = 0;
+  std::thread worker_;  // last: it uses the rest
+};
+
+}  // namespace silpose

@@ -1,0 +1,93 @@
+#include "silpose/base/job_line.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+namespace silpose {
+namespace {
+
+TEST(JobLine, DoesJobsInOrderBesideTheGiver) {
+  std::vector<int> done;
+  const auto giver = std::this_thread::get_id();
+  std::thread::id doer = giver;
+  JobLine line(2);
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(line.give([&, i]() -> Result<void> {
+      done.push_back(i);
+      doer = std::this_thread::get_id();
+      return {};
+    }));
+  }
+  ASSERT_TRUE(line.finish());
+  ASSERT_EQ(done.size(), 20U);
+  for (int i = 0; i < 20; ++i) EXPECT_EQ(done[static_cast<size_t>(i)], i);
+  EXPECT_NE(doer, giver);
+}
+
+TEST(JobLine, GivingWaitsWhereTooManyWait) {
+  JobLine line(1);
+  int num_done = 0;
+  for (int i = 0; i < 4; ++i) {
+    ASSERT_TRUE(line.give([&]() -> Result<void> {
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+      ++num_done;
+      return {};
+    }));
+  }
+  ASSERT_TRUE(line.finish());
+  EXPECT_EQ(num_done, 4);
+  EXPECT_GE(line.take_seconds(), 0.008);
+  EXPECT_EQ(line.take_seconds(), 0);
+}
+
+TEST(JobLine, TellsAFailureOnceAndDoesNothingAfterIt) {
+  JobLine line;
+  int num_done = 0;
+  ASSERT_TRUE(line.give([]() -> Result<void> { return error("disk: full"); }));
+  const Result<void> told = line.finish();
+  ASSERT_FALSE(told);
+  EXPECT_EQ(told.error().message, "disk: full");
+  EXPECT_TRUE(line.give([&]() -> Result<void> {
+    ++num_done;
+    return {};
+  }));
+  EXPECT_TRUE(line.finish());
+  EXPECT_EQ(num_done, 0);
+}
+
+TEST(JobLine, AFailureEndsTheWaitingOfWhoGivesMore) {
+  JobLine line(1);
+  Result<void> told;
+  for (int i = 0; i < 100 && told.ok(); ++i) {
+    told = line.give([]() -> Result<void> { return error("no"); });
+  }
+  EXPECT_FALSE(told);
+}
+
+TEST(JobLine, ThrowsWhatAJobThrew) {
+  JobLine line;
+  ASSERT_TRUE(line.give([]() -> Result<void> { throw std::runtime_error("unforeseen"); }));
+  EXPECT_THROW((void)line.finish(), std::runtime_error);
+}
+
+TEST(JobLine, DoesWhatWasGivenBeforeItEnds) {
+  int num_done = 0;
+  {
+    JobLine line;
+    for (int i = 0; i < 3; ++i) {
+      ASSERT_TRUE(line.give([&]() -> Result<void> {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        ++num_done;
+        return {};
+      }));
+    }
+  }
+  EXPECT_EQ(num_done, 3);
+}
+
+}  // namespace
+}  // namespace silpose
