@@ -1,11 +1,11 @@
 #include "silpose/image/mask_count.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <vector>
 
 #include "silpose/base/rng.h"
+#include "silpose/base/simd_targets.h"
 
 namespace silpose {
 namespace {
@@ -14,23 +14,6 @@ int64_t bits_of(uint64_t word) {
   int64_t count = 0;
   for (int bit = 0; bit < 64; ++bit) count += static_cast<int64_t>((word >> bit) & 1);
   return count;
-}
-
-// Every instruction set that this processor has, in turn.
-template <class Body>
-void for_each_target(const Body& body) {
-  int num_targets = 0;
-  for (int64_t rest = hwy::SupportedTargets(); rest != 0; rest &= rest - 1) {
-    const int64_t target = rest & -rest;
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    SCOPED_TRACE(hwy::TargetName(target));
-    body();
-    hwy::SetSupportedTargetsForTest(0);
-    ++num_targets;
-  }
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(num_targets, 1);
 }
 
 void expect_counts(std::span<const uint64_t> a, std::span<const uint64_t> b) {
@@ -52,7 +35,8 @@ TEST(MaskCount, EveryTargetAgreesWithAPlainLoop) {
   std::vector<uint64_t> a(600), b(600);
   for (uint64_t& word : a) word = rng.bits();
   for (uint64_t& word : b) word = rng.bits() & rng.bits();
-  for_each_target([&] {
+  for_each_simd_target([&](const char* name) {
+    SCOPED_TRACE(name);
     for (const size_t count : {0, 1, 2, 3, 4, 7, 8, 9, 15, 31, 63, 64, 247, 248, 249, 256, 577}) {
       for (const size_t offset : {0, 1, 5}) {  // vectors that are not aligned
         SCOPED_TRACE(count);
@@ -65,7 +49,8 @@ TEST(MaskCount, EveryTargetAgreesWithAPlainLoop) {
 // More full words than a byte can count at a time.
 TEST(MaskCount, FullWordsDoNotOverflow) {
   const std::vector<uint64_t> full(1000, ~uint64_t{0}), empty(1000, 0);
-  for_each_target([&] {
+  for_each_simd_target([&](const char* name) {
+    SCOPED_TRACE(name);
     expect_counts(full, empty);
     expect_counts(full, full);
   });

@@ -11,7 +11,7 @@
 #include "silpose/likelihood/coverage_raster.h"
 #include "silpose/likelihood/coverage_reference.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/render/simd_targets.h"
+#include "silpose/base/simd_targets.h"
 
 namespace silpose {
 namespace {

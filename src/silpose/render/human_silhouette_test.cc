@@ -4,7 +4,7 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/render/simd_targets.h"
+#include "silpose/base/simd_targets.h"
 
 namespace silpose {
 namespace {

@@ -7,29 +7,14 @@
 
 #include "silpose/base/parallel.h"
 #include "silpose/segment/cast_shadow.h"
+#include "silpose/segment/foreground_evidence.h"
 
 namespace silpose {
 namespace {
 
 constexpr int kBlock = 16;  // pixels
 
-// A pixel is foreground by itself from this chi-square distance on (3 channels). With noise of 3 grey levels that is
-// where the background's Gaussian falls below a foreground of any colour, equally likely.
-constexpr float kThreshold = 22;
-// A small difference that a whole window shows counts as well. Noise of coded video is alike in neighbours: the mean of
-// nine pixels has half the variance of one, not a ninth.
-constexpr int kWindow = 3;
-// Not where the pixel itself shows next to nothing: there the window looks over the subject's edge.
-constexpr float kWindowWeight = 2, kWindowMost = 10;
-// Evidence of one pixel is bounded, so that neighbours can outvote it.
-constexpr float kMaxAgainst = 4, kMaxFor = 6;
-// Shadows darken to a third at most: the deviation of the factor. Light thrown back brightens far less.
-constexpr float kShadowDeviation = 0.15f, kGlowDeviation = 0.04f;
-// A shadow keeps the background's texture: windows in which the luma is compared, and the weight of what is left over,
-// in noise variances.
-// Small windows: a shadow on the floor is seen at a low angle and is a narrow strip.
-constexpr int kReach = 1;
-constexpr float kTextureWeight = 3;
+constexpr int kWindow = 3;  // pixels, of the means that are compared as well
 // Weight of the eight neighbours together, and the step of colour (grey levels) across which they count half.
 constexpr float kNeighbours = 4, kContrast = 12;
 constexpr int kIterations = 4;
@@ -87,98 +72,41 @@ ForegroundFinder::ForegroundFinder(BackgroundModel model)
 }
 
 void ForegroundFinder::compare_texture(const ByteImage& luma_chroma) {
-  const int width = model_.width(), height = model_.height();
-  parallel_for(static_cast<size_t>(height), kBlock, [&](size_t begin, size_t end) {
-    // Sums over the columns of the window, with kReach empty ones on either side.
-    const size_t padded = static_cast<size_t>(width) + 2 * kReach;
-    std::vector<int> seen_seen(padded), seen_back(padded), back_back(padded);
+  const auto width = static_cast<size_t>(model_.width());
+  parallel_for(static_cast<size_t>(model_.height()), kBlock, [&](size_t begin, size_t end) {
+    std::vector<int32_t> sums(texture_sums_size(width));
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
-      for (auto* sums : {&seen_seen, &seen_back, &back_back}) std::fill(sums->begin(), sums->end(), 0);
-      const int first = std::max(y - kReach, 0), last = std::min(y + kReach, height - 1);
-      for (int v = first; v <= last; ++v) {
-        const uint8_t *seen = luma_chroma.row(v).data(), *back = model_.median.row(v).data();
-        for (int x = 0; x < width; ++x) {
-          const int s = seen[3 * x], b = back[3 * x];
-          const auto i = static_cast<size_t>(x + kReach);
-          seen_seen[i] += s * s;
-          seen_back[i] += s * b;
-          back_back[i] += b * b;
-        }
+      TextureRows rows;
+      for (int v = std::max(y - kTextureReach, 0); v <= std::min(y + kTextureReach, model_.height() - 1); ++v) {
+        rows.seen[rows.count] = luma_chroma.row(v).data();
+        rows.background[rows.count++] = model_.median.row(v).data();
       }
-      float* texture = &texture_[static_cast<size_t>(y) * static_cast<size_t>(width)];
-      for (int x = 0; x < width; ++x) {
-        int ss = 0, sb = 0, bb = 0;
-        for (size_t i = static_cast<size_t>(x); i <= static_cast<size_t>(x) + 2 * kReach; ++i) {
-          ss += seen_seen[i];
-          sb += seen_back[i];
-          bb += back_back[i];
-        }
-        const int columns = std::min(x + kReach, width - 1) - std::max(x - kReach, 0) + 1;
-        const double left = ss - static_cast<double>(sb) * sb / std::max(bb, 1);
-        texture[x] = static_cast<float>(left) / static_cast<float>(columns * (last - first + 1));
-      }
+      compare_texture_row(rows, width, sums.data(), &texture_[static_cast<size_t>(y) * width]);
     }
   });
 }
 
-// Half the chi-square distance above the threshold, bounded.
 void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma, float gain) {
-  const ByteImage window_seen = window_mean(luma_chroma);
+  const ByteImage around = window_mean(luma_chroma);
   const size_t width = static_cast<size_t>(model_.width()), pixels = texture_.size();
   parallel_for(static_cast<size_t>(model_.height()), kBlock, [&](size_t begin, size_t end) {
-    std::vector<float> planes(10 * width);
-    float *seen_y = planes.data(), *seen_r = seen_y + width, *seen_b = seen_r + width;
-    float *back_y = seen_b + width, *back_r = back_y + width, *back_b = back_r + width, *least = back_b + width;
-    float *around_y = least + width, *around_r = around_y + width, *around_b = around_r + width;
-    for (size_t y = begin; y < end; ++y) {
-      const uint8_t* pixel = luma_chroma.row(static_cast<int>(y)).data();
-      const uint8_t* background = model_.median.row(static_cast<int>(y)).data();
-      const uint8_t* window = window_seen.row(static_cast<int>(y)).data();
-      const uint8_t* window_back = window_back_.row(static_cast<int>(y)).data();
-      for (size_t x = 0; x < width; ++x) {
-        const auto apart = [&](size_t c, float centre) {
-          return static_cast<float>(window[3 * x + c]) - centre -
-                 gain * (static_cast<float>(window_back[3 * x + c]) - centre);
-        };
-        around_y[x] = apart(0, 0);
-        around_r[x] = apart(1, 128);
-        around_b[x] = apart(2, 128);
-        seen_y[x] = pixel[3 * x];
-        seen_r[x] = static_cast<float>(pixel[3 * x + 1]) - 128;
-        seen_b[x] = static_cast<float>(pixel[3 * x + 2]) - 128;
-        back_y[x] = gain * static_cast<float>(background[3 * x]);
-        back_r[x] = gain * (static_cast<float>(background[3 * x + 1]) - 128);
-        back_b[x] = gain * (static_cast<float>(background[3 * x + 2]) - 128);
+    std::vector<float> least(width + 2 * kTextureReach);
+    for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+      const float* noise = &inverse_noise_[static_cast<size_t>(y) * width];
+      EvidenceRow row{.seen = luma_chroma.row(y).data(),
+                      .background = model_.median.row(y).data(),
+                      .seen_around = around.row(y).data(),
+                      .background_around = window_back_.row(y).data(),
+                      .inverse_noise = {noise, noise + pixels, noise + 2 * pixels},
+                      .gain = gain,
+                      .width = width};
+      for (int v = -kTextureReach; v <= kTextureReach; ++v) {
+        const int in_picture = std::clamp(y + v, 0, model_.height() - 1);
+        row.texture[static_cast<size_t>(v + kTextureReach)] = &texture_[static_cast<size_t>(in_picture) * width];
       }
-      const float* weight_y = &inverse_noise_[y * width];
-      const float *weight_r = weight_y + pixels, *weight_b = weight_r + pixels;
-      float* evidence = &evidence_[(y + 1) * stride_ + 1];
-      float* belief = &belief_[(y + 1) * stride_ + 1];
-      uint8_t* differs = differs_.row(static_cast<int>(y)).data();
-      // The least of the windows that hold the pixel: those beside it keep clear of the subject's edge.
-      const size_t above = y >= kReach ? y - kReach : y,
-                   below = std::min(y + kReach, static_cast<size_t>(model_.height()) - 1);
-      for (size_t x = 0; x < width; ++x) {
-        least[x] = std::min({texture_[above * width + x], texture_[y * width + x], texture_[below * width + x]});
-      }
-      for (size_t x = 0; x < width; ++x) {
-        const float here = square(seen_y[x] - back_y[x]) * weight_y[x] + square(seen_r[x] - back_r[x]) * weight_r[x] +
-                           square(seen_b[x] - back_b[x]) * weight_b[x];
-        const float around =
-            square(around_y[x]) * weight_y[x] + square(around_r[x]) * weight_r[x] + square(around_b[x]) * weight_b[x];
-        const float plain = std::max(here, std::min(kWindowWeight * around, kWindowMost * here));
-        const float factor = std::min(seen_y[x] / std::max(back_y[x], 1.0f), 1.5f);
-        const float deviation = factor < 1 ? 1 / kShadowDeviation : 1 / kGlowDeviation;
-        float shadow = square((factor - 1) * deviation) + square(seen_r[x] - factor * back_r[x]) * weight_r[x] +
-                       square(seen_b[x] - factor * back_b[x]) * weight_b[x];
-        const float texture =
-            std::min({least[x >= kReach ? x - kReach : 0], least[x], least[std::min(x + kReach, width - 1)]});
-        shadow += kTextureWeight * std::max(texture * weight_y[x] - 1, 0.0f);
-        const float half = 0.5f * (std::min(plain, shadow) - kThreshold);
-        evidence[x] = std::min(std::max(half, -kMaxAgainst), kMaxFor);
-        belief[x] = squash(evidence[x]);
-        differs[x] = plain > kThreshold;
-      }
+      float* evidence = &evidence_[(static_cast<size_t>(y) + 1) * stride_ + 1];
+      weigh_evidence_row(row, least.data(), evidence, differs_.row(y).data());
+      std::transform(evidence, evidence + width, &belief_[(static_cast<size_t>(y) + 1) * stride_ + 1], squash);
     }
   });
 }
@@ -204,8 +132,8 @@ void ForegroundFinder::take_out_shadow(const ByteImage& luma_chroma, float gain)
           *belief = &belief_[(static_cast<size_t>(y) + 1) * stride_ + 1];
     for (size_t x = 0; x < is_shadow.size(); ++x) {
       if (is_shadow[x] == 0) continue;
-      evidence[x] = -kMaxAgainst;
-      belief[x] = squash(-kMaxAgainst);
+      evidence[x] = -kMostAgainst;
+      belief[x] = squash(-kMostAgainst);
     }
   }
 }
