@@ -195,6 +195,8 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
 }
 
 Result<void> ObservationSource::rewind(Console& console) {
+  if (Result<void> done = ahead_->finish(); !done) return done;
+  next_.reset();
   if (std::ranges::all_of(segmenters_, [](const auto& segmenter) { return segmenter->can_go_back(); })) {
     Result<Video> video = open_video(options_.videos, options_.video_options());
     if (!video) return video.failure();
@@ -244,27 +246,60 @@ void ObservationSource::thin_out_to(int64_t count) {
   stride_ = num_expected() > 0 ? (num_expected() + count - 1) / count : kUnknownLength;
 }
 
+bool ObservationSource::may_be_tracked(const Frame& frame) const {
+  if (frame.time_ns < start_ns_ || frame.time_ns > end_ns_) return false;
+  for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
+    if (video_->own_index(static_cast<int>(camera)) < segmenters_[camera]->first_index()) return false;
+  }
+  return true;
+}
+
+void ObservationSource::read_ahead() {
+  next_ = std::make_unique<Read>();
+  Result<void> given = ahead_->give([this, to = next_.get()]() -> Result<void> {
+    Stopwatch stopwatch;
+    to->frame = video_->next();
+    to->decode_s = stopwatch.restart();
+    if (!to->frame || !to->frame->has_value() || stride_ > 1 || !may_be_tracked(**to->frame)) return {};
+    for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
+      segmenters_[camera]->prepare((*to->frame)->images[camera], video_->own_index(static_cast<int>(camera)));
+    }
+    to->prepare_s = stopwatch.seconds();
+    return {};
+  });
+  check(given.ok(), "ObservationSource: its jobs tell their failures otherwise");
+}
+
+Result<ObservationSource::Read> ObservationSource::read_frame() {
+  if (!next_) {
+    const Stopwatch stopwatch;
+    Read read{.frame = video_->next()};
+    read.decode_s = stopwatch.seconds();
+    return read;
+  }
+  if (Result<void> done = ahead_->finish(); !done) return done.failure();
+  return std::move(*std::exchange(next_, nullptr));
+}
+
 Result<std::optional<Instant>> ObservationSource::read(bool segments) {
-  const Stopwatch decoding;
-  double segment_s = 0;
+  Instant instant;
   for (;;) {
-    Result<std::optional<Frame>> frame = video_->next();
+    Result<Read> read = read_frame();
+    if (!read) return read.failure();
+    Result<std::optional<Frame>>& frame = read->frame;
     if (!frame) return frame.failure();
     if (!frame->has_value() || (*frame)->time_ns > end_ns_) return std::optional<Instant>();
-    bool wanted = (*frame)->time_ns >= start_ns_;
-    for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
-      wanted = wanted && video_->own_index(static_cast<int>(camera)) >= segmenters_[camera]->first_index();
-    }
-    wanted = wanted && num_wanted_++ % stride_ == 0;
-    Instant instant;
+    instant.decode_s += read->decode_s;
+    instant.segment_s += read->prepare_s;
+    const bool wanted = may_be_tracked(**frame) && num_wanted_++ % stride_ == 0;
     for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
       if (!(wanted && segments) && !segmenters_[camera]->sees_all()) continue;
       const Stopwatch segmenting;
       Result<Segmentation> segmentation =
           segmenters_[camera]->segment((*frame)->images[camera], video_->own_index(static_cast<int>(camera)));
-      segment_s += segmenting.seconds();
+      instant.segment_s += segmenting.seconds();
       if (!segmentation) return segmentation.failure();
-      instant.observations.push_back(observation_from(std::move(*segmentation)));
+      if (wanted) instant.observations.push_back(observation_from(std::move(*segmentation)));
     }
     if (!wanted) {
       if (Console::interrupted()) return std::optional<Instant>();
@@ -275,8 +310,7 @@ Result<std::optional<Instant>> ObservationSource::read(bool segments) {
       num_cut_ += seen.trust.touches_border ? 1 : 0;
     }
     instant.frame = std::move(**frame);
-    instant.segment_s = segment_s;
-    instant.decode_s = decoding.seconds() - segment_s;
+    if (segments) read_ahead();
     return std::optional<Instant>(std::move(instant));
   }
 }
@@ -312,6 +346,7 @@ bool ObservationSource::finds_landmarks() const {
 }
 
 std::vector<std::string> ObservationSource::warnings() const {
+  (void)ahead_->finish();  // what it failed with is next()'s to tell
   std::vector<std::string> all = warnings_;
   for (const auto& segmenter : segmenters_) {
     const std::vector<std::string> own = segmenter->warnings();

@@ -1,4 +1,5 @@
 // ObservationSource: from the videos and the options of a command to one observation a camera and instant.
+// The next frame is read, and what of its masks can be told already is found, while the last one is tracked.
 // Threads: the main thread only; segmentation itself uses all cores.
 #pragma once
 
@@ -11,6 +12,7 @@
 
 #include "apps/silpose/camera_choice.h"
 #include "apps/silpose/console.h"
+#include "silpose/base/job_line.h"
 #include "silpose/base/result.h"
 #include "silpose/image/video.h"
 #include "silpose/segment/segmenter.h"
@@ -43,6 +45,7 @@ struct Instant {
   double decode_s = 0, segment_s = 0;
 };
 
+// Not to be moved once next() was called: what it reads ahead refers to it.
 class ObservationSource {
  public:
   // Learns the backgrounds that have to be learned. Errors: those of open_video() and make_segmenter(); a garbage mask
@@ -81,6 +84,15 @@ class ObservationSource {
   ObservationSource() = default;
   Result<std::optional<Instant>> read(bool segments);
 
+  // A frame of the video, and how long it took to read and to prepare.
+  struct Read {
+    Result<std::optional<Frame>> frame = std::optional<Frame>();
+    double decode_s = 0, prepare_s = 0;
+  };
+  Result<Read> read_frame();
+  void read_ahead();
+  [[nodiscard]] bool may_be_tracked(const Frame& frame) const;
+
   InputOptions options_;
   std::unique_ptr<Video> video_;
   std::vector<std::unique_ptr<Segmenter>> segmenters_;
@@ -89,7 +101,9 @@ class ObservationSource {
   int64_t stride_ = 1, num_wanted_ = 0;
   int64_t num_seen_ = 0, num_cut_ = 0;  // masks with a subject, and of these at the edge of the picture
   double learning_s_ = 0;
-  int64_t start_ns_ = 0, end_ns_ = 0;  // of the stretch that --start and --end choose
+  int64_t start_ns_ = 0, end_ns_ = 0;                             // of the stretch that --start and --end choose
+  std::unique_ptr<Read> next_;                                    // read ahead, where a job of `ahead_` was given
+  std::unique_ptr<JobLine> ahead_ = std::make_unique<JobLine>();  // last: its jobs use the rest
 };
 
 }  // namespace silpose::app

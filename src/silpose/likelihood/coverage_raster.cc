@@ -1,6 +1,9 @@
 #include "silpose/likelihood/coverage_raster.h"
 
+#include <algorithm>
 #include <bit>
+#include <cstdint>
+#include <span>
 
 #include "silpose/base/check.h"
 
@@ -8,6 +11,19 @@ namespace silpose {
 namespace {
 
 int cells_along(int pixels, int cell) { return (pixels + cell - 1) / cell; }
+
+// Bits [begin, end) of a row, as far as it has them.
+int count_set(std::span<const uint64_t> words, int begin, int end) {
+  int count = 0;
+  for (int x = begin; x < end;) {
+    const auto word = static_cast<size_t>(x) / 64;
+    if (word >= words.size()) break;
+    const int first = x % 64, last = std::min(64, first + end - x);
+    count += std::popcount(words[word] << (64 - last) >> (64 - last + first));
+    x += last - first;
+  }
+  return count;
+}
 
 }  // namespace
 
@@ -19,18 +35,16 @@ CoverageEvidence::Raster coverage_raster(const Observation& observation, int cel
   const int width = cells_along(mask.width(), cell), height = cells_along(mask.height(), cell);
   raster.observed = Image<float>(width, height);
   const float one_pixel = 1.0f / static_cast<float>(cell * cell);
-  for (int y = observation.box.y; y < observation.box.y + observation.box.height; ++y) {
-    const auto words = mask.row(y);
-    const auto cells = raster.observed.row(y / cell);
-    for (size_t w = 0; w < words.size(); ++w) {
-      for (uint64_t bits = words[w]; bits != 0; bits &= bits - 1) {
-        cells[static_cast<size_t>((static_cast<int>(64 * w) + std::countr_zero(bits)) / cell)] += one_pixel;
-      }
-    }
-  }
   const Box& box = observation.box;
   raster.occupied = {box.x / cell, box.y / cell, (box.x + box.width - 1) / cell - box.x / cell + 1,
                      (box.y + box.height - 1) / cell - box.y / cell + 1};
+  for (int y = box.y; y < box.y + box.height; ++y) {
+    const auto words = mask.row(y);
+    const auto cells = raster.observed.row(y / cell);
+    for (int x = raster.occupied.x; x < raster.occupied.x + raster.occupied.width; ++x) {
+      cells[static_cast<size_t>(x)] += one_pixel * static_cast<float>(count_set(words, x * cell, (x + 1) * cell));
+    }
+  }
   if (!observation.confidence.empty()) {
     check(observation.confidence.width() == mask.width() && observation.confidence.height() == mask.height(),
           "coverage_raster: confidence of {}x{} for a mask of {}x{}", observation.confidence.width(),
@@ -39,8 +53,10 @@ CoverageEvidence::Raster coverage_raster(const Observation& observation, int cel
     for (int y = 0; y < mask.height(); ++y) {
       const auto row = observation.confidence.row(y);
       const auto cells = raster.confidence.row(y / cell);
-      for (int x = 0; x < mask.width(); ++x) {
-        cells[static_cast<size_t>(x / cell)] += static_cast<float>(row[static_cast<size_t>(x)]) * one_pixel / 255.0f;
+      for (int cell_x = 0, x = 0; cell_x < width; ++cell_x) {
+        int sum = 0;
+        for (const int end = std::min(x + cell, mask.width()); x < end; ++x) sum += row[static_cast<size_t>(x)];
+        cells[static_cast<size_t>(cell_x)] += static_cast<float>(sum) * (one_pixel / 255.0f);
       }
     }
   }

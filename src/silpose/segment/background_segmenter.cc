@@ -23,39 +23,55 @@ class BackgroundSegmenter : public BlobSegmenter {
     blob_.join_gap = std::min(blob_.join_gap, kGap);
   }
 
+  void prepare(const ByteImage& image, int64_t index) override { prepared_.emplace(index, look_at(image, index)); }
+
   Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
-    if (image.width() != finder_.model().width() || image.height() != finder_.model().height()) {
-      return error("frame {}: {}x{}, its background {}x{}", index, image.width(), image.height(),
-                   finder_.model().width(), finder_.model().height());
-    }
-    const ByteImage luma_chroma = to_luma_chroma(image);
-    std::optional<Image<float>> depth;
-    if (options_.depth) {
-      const Result<DepthImage> seen = options_.depth->files.image_of(index);
-      if (!seen) return seen.failure();
-      depth = depth_evidence(*seen, options_.depth->background);
-    }
-    const Mask found = finder_.find(luma_chroma, depth ? &*depth : nullptr);
-    const Mask blob = subject_of(found, blob_);
-    ByteImage confidence = finder_.confidence(found);
-    doubt_changes(confidence, found, blob);
+    const auto prepared = std::exchange(prepared_, std::nullopt);
+    Result<Look> look = prepared && prepared->first == index ? prepared->second : look_at(image, index);
+    if (!look) return look.failure();
+    const Mask blob = subject_of(look->found, blob_);
+    doubt_changes(look->confidence, look->found, blob);
     const int grow_px = options_.clean_up.grow_px;
     // Colour alone must not decide the edge of what depth had a say in.
-    if (depth) return judge(grow(blob, grow_px), std::move(confidence));
-    const EdgeMatte matte = refine_edge(blob, luma_chroma, finder_.model().median);
-    lower_confidence(confidence, matte.confidence);
-    forgive_edges(confidence, matte.mask);
-    return judge(grow(matte.mask, grow_px), std::move(confidence));
+    if (options_.depth) return judge(grow(blob, grow_px), std::move(look->confidence));
+    const EdgeMatte matte = refine_edge(blob, look->luma_chroma, finder_.model().median);
+    lower_confidence(look->confidence, matte.confidence);
+    forgive_edges(look->confidence, matte.mask);
+    return judge(grow(matte.mask, grow_px), std::move(look->confidence));
   }
   [[nodiscard]] int64_t first_index() const override { return options_.first_index; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return options_.warnings; }
   [[nodiscard]] std::string name() const override { return options_.name; }
 
  private:
+  // All foreground of a picture, whosever it is.
+  struct Look {
+    ByteImage luma_chroma;
+    Mask found;
+    ByteImage confidence;
+  };
+  Result<Look> look_at(const ByteImage& image, int64_t index) {
+    if (image.width() != finder_.model().width() || image.height() != finder_.model().height()) {
+      return error("frame {}: {}x{}, its background {}x{}", index, image.width(), image.height(),
+                   finder_.model().width(), finder_.model().height());
+    }
+    std::optional<Image<float>> depth;
+    if (options_.depth) {
+      const Result<DepthImage> seen = options_.depth->files.image_of(index);
+      if (!seen) return seen.failure();
+      depth = depth_evidence(*seen, options_.depth->background);
+    }
+    Look look{.luma_chroma = to_luma_chroma(image)};
+    look.found = finder_.find(look.luma_chroma, depth ? &*depth : nullptr);
+    look.confidence = finder_.confidence(look.found);
+    return look;
+  }
+
   static constexpr double kGap = 0.003;  // of the picture's height: fingers and knees stay apart
   BackgroundSegmenterOptions options_;
   ForegroundFinder finder_;
   CleanUpOptions blob_;
+  std::optional<std::pair<int64_t, Result<Look>>> prepared_;  // by the picture's number
 };
 
 class OnlineSegmenter : public BlobSegmenter {
