@@ -5,65 +5,74 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "silpose/base/aligned_floats.h"
+#include "silpose/likelihood/coverage_kernels.h"
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/render/span_kernels.h"
 
 namespace silpose {
 
 // D = w (C_model - C_observed) on the cells, K = G * G the blur applied twice, sigma one cell.
 class CoverageDifference {
  public:
-  // Forgets everything.
-  void start(const CoverageEvidence::Raster& raster, int rows_per_cell);
+  // Forgets everything. `picture_width` in pixels: what lies beyond covers nothing.
+  void start(const CoverageEvidence::Raster& raster, int picture_width, int rows_per_cell);
 
-  // Adds the model's span [begin, end) (pixels inside the picture) of one sampled row of a row of cells.
-  void add_span(int cell_y, float begin, float end);
-  [[nodiscard]] int column_of(float x) const { return std::min(static_cast<int>(x * per_cell_), width_ - 1); }
+  // Adds what the model covers, once: the ends of its spans on sampled rows, rows_per_cell to a cell.
+  void add_model(const SpanEnds& ends);
 
-  // A cell that a span touches holds an end, whose derivative will follow.
-  void mark_end(int cell_x, int cell_y) { rank_[at(cell_x, cell_y)] = 1; }
-  // After all spans and ends: how many cells hold ends. They are numbered row by row.
-  size_t number_cells();
-  [[nodiscard]] int32_t number_of(int cell_x, int cell_y) const { return rank_[at(cell_x, cell_y)]; }
-  [[nodiscard]] float confidence(int cell_x, int cell_y) const {
-    return raster_->confidence.empty() ? 1.0f : raster_->confidence.at(cell_x, cell_y);
+  // After add_model(): numbers the cells that hold ends, row by row, and says in which each end lies; -1: outside of
+  // the picture, where it moves nothing. [ends]
+  std::span<const int32_t> number_cells();
+  [[nodiscard]] size_t num_end_cells() const { return num_end_cells_; }
+  [[nodiscard]] float confidence(size_t end_cell) const {
+    return raster_->confidence.empty() ? 1.0f : raster_->confidence[raster_->at(end_x_[end_cell], end_y_[end_cell])];
   }
 
   // J = d D / d pose [cells that hold ends, stride], for the caller to fill: D columns, then at least one of zeros.
   // REQUIRES: stride a multiple of AlignedFloats::kLanes.
   float* jacobian(size_t stride);
 
-  // After all spans: subtracts the observation, and gives D' K D.
+  // After add_model(): subtracts the observation, and gives D' K D.
   double finish();
 
   // After finish(), with the Jacobian filled: gradient += weight * J' K D, hessian += weight * J' K J.
   void add_normal_equations(double weight, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian);
 
  private:
-  static constexpr int kMargin = AlignedFloats::kLanes;  // cells left and right of the picture that stay zero
-  static size_t stride_of(int width) {
-    return AlignedFloats::padded(static_cast<size_t>(width)) + 3 * static_cast<size_t>(kMargin);
+  static constexpr int kMargin = AlignedFloats::kLanes;  // cells beyond the picture that stay zero
+  static size_t stride_of(int length) {
+    return AlignedFloats::padded(static_cast<size_t>(length)) + 3 * static_cast<size_t>(kMargin);
   }
   [[nodiscard]] size_t at(int cell_x, int cell_y) const {
-    return static_cast<size_t>(cell_y) * stride_ + static_cast<size_t>(cell_x + kMargin);
+    return static_cast<size_t>(cell_x) * stride_ + static_cast<size_t>(cell_y + kMargin);
   }
+  [[nodiscard]] size_t rank_at(int cell_x, int cell_y) const {
+    return static_cast<size_t>(cell_y) * rank_stride_ + static_cast<size_t>(cell_x + kMargin);
+  }
+  void number_rows();
 
   const CoverageEvidence::Raster* raster_ = nullptr;
   int width_ = 0, height_ = 0;
-  size_t stride_ = 0;
-  float per_cell_ = 1, row_weight_ = 1;
-  std::vector<float> difference_;         // [height, stride_] cells
+  size_t stride_ = 0, rank_stride_ = 0;
+  float picture_width_ = 0;
+  int rows_per_cell_ = 1;
+  // Column by column: [width + 1, stride_], the last unread. Before finish(): what changes from the column on the left.
+  std::vector<float> difference_;
   AlignedFloats half_blurred_, blurred_;  // of the drawn box
-  std::vector<int32_t> rank_;             // [height, stride_] 1: holds ends; then number_of()
-  std::vector<int32_t> end_x_, end_y_;    // cells that hold an end
+  CellBox model_, drawn_;                 // cells that the model touches, and the observation
+  // [ends]
+  size_t num_ends_ = 0;
+  std::vector<int32_t> end_at_, end_rank_at_, number_;
+  std::vector<float> end_here_, end_beyond_;
+  std::vector<int32_t> rank_;           // row by row: [height, rank_stride_] 1: holds ends; then how many do before it
+  std::vector<int32_t> end_x_, end_y_;  // cells that hold an end
   size_t num_end_cells_ = 0, jacobian_stride_ = 0;
   AlignedFloats jacobian_, half_near_, product_;
-  int model_x0_ = 0, model_x1_ = 0, model_y0_ = 0, model_y1_ = 0;  // cells the model touches
-  int drawn_x0_ = 0, drawn_x1_ = 0, drawn_y0_ = 0, drawn_y1_ = 0;  // cells that are not zero
 };
 
 }  // namespace silpose

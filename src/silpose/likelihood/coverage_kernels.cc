@@ -51,6 +51,53 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::ScalableTag<float>;
 using Vector = hn::Vec<Tag>;
 
+CellBox place_ends(const SpanEnds& ends, const CellGrid& grid, const PlacedEnds& placed) {
+  const hn::CappedTag<float, kSpanSpare> d;
+  const hn::RebindToSigned<decltype(d)> di;
+  const auto zero = hn::Zero(d), width = hn::Set(d, grid.picture_width);
+  const auto cells_per_pixel = hn::Set(d, grid.cells_per_pixel), row_weight = hn::Set(d, grid.cells_per_row);
+  const auto last_x = hn::Set(di, grid.last_x), stride = hn::Set(di, grid.stride);
+  const auto rank_stride = hn::Set(di, grid.rank_stride), margin = hn::Set(di, grid.margin);
+  auto x0 = last_x, x1 = hn::Zero(di), y0 = hn::Set(di, INT32_MAX), y1 = x1;
+  for (size_t i = 0; i < ends.count; i += hn::Lanes(d)) {
+    const auto x = hn::LoadU(d, ends.x + i), side = hn::LoadU(d, ends.side + i);
+    const auto in_cells = hn::Mul(hn::Min(hn::Max(x, zero), width), cells_per_pixel);
+    const auto cell_x = hn::Min(hn::ConvertTo(di, in_cells), last_x);
+    // Half a row off, so that rounding does not matter.
+    const auto row = hn::Add(hn::ConvertTo(d, hn::LoadU(di, ends.row + i)), hn::Set(d, 0.5f));
+    const auto cell_y = hn::ConvertTo(di, hn::Mul(row, row_weight));
+    const auto change = hn::Mul(side, row_weight);
+    const auto beyond = hn::Mul(change, hn::Sub(in_cells, hn::ConvertTo(d, cell_x)));
+    hn::StoreU(hn::Sub(change, beyond), d, placed.here + i);
+    hn::StoreU(beyond, d, placed.beyond + i);
+    hn::StoreU(hn::Add(hn::Mul(cell_x, stride), hn::Add(cell_y, margin)), di, placed.at + i);
+    const auto rank_at = hn::Add(hn::Mul(cell_y, rank_stride), hn::Add(cell_x, margin));
+    const auto inside = hn::RebindMask(di, hn::And(hn::Gt(x, zero), hn::Lt(x, width)));
+    hn::StoreU(hn::IfThenElse(inside, rank_at, hn::Set(di, -1)), di, placed.rank_at + i);
+    const auto counts = hn::FirstN(di, ends.count - i);
+    x0 = hn::Min(x0, hn::IfThenElse(counts, cell_x, x0));
+    x1 = hn::Max(x1, hn::IfThenElseZero(counts, cell_x));
+    y0 = hn::Min(y0, hn::IfThenElse(counts, cell_y, y0));
+    y1 = hn::Max(y1, hn::IfThenElseZero(counts, cell_y));
+  }
+  return {hn::GetLane(hn::MinOfLanes(di, x0)), hn::GetLane(hn::MinOfLanes(di, y0)),
+          hn::GetLane(hn::MaxOfLanes(di, x1)) + 1, hn::GetLane(hn::MaxOfLanes(di, y1)) + 1};
+}
+
+void subtract_observed(const ObservedCells& cells, float* difference, size_t stride, size_t height, size_t width) {
+  const Tag d;
+  for (size_t y = 0; y < height; y += hn::Lanes(d)) {
+    auto covered = hn::Zero(d);
+    for (size_t x = 0; x < width; ++x) {
+      float* const cell = difference + x * stride + y;
+      covered = hn::Add(covered, hn::LoadU(d, cell));
+      auto left = hn::Sub(covered, hn::LoadU(d, cells.observed + x * cells.stride + y));
+      if (cells.confidence != nullptr) left = hn::Mul(left, hn::LoadU(d, cells.confidence + x * cells.stride + y));
+      hn::StoreU(left, d, cell);
+    }
+  }
+}
+
 double blur_cells(const float* difference, size_t stride, size_t width, size_t height, float* half, float* blurred) {
   const Tag d;
   const size_t lanes = hn::Lanes(d), padded = AlignedFloats::padded(width);
@@ -92,24 +139,25 @@ double blur_cells(const float* difference, size_t stride, size_t width, size_t h
   return total;
 }
 
-void add_up_ends(const EndRow* ends, const uint32_t* ends_end, size_t num_cells, const float* point_rows, size_t stride,
+void add_up_ends(const EndRow* ends, size_t num_ends, const float* point_rows, size_t stride, size_t num_cells,
                  float* jacobian) {
   const Tag d;
   const size_t lanes = hn::Lanes(d);
-  uint32_t begin = 0;
-  for (size_t cell = 0; cell < num_cells; ++cell, jacobian += stride) {
+  for (size_t i = 0; i < num_cells * stride; i += lanes) hn::Store(hn::Zero(d), d, jacobian + i);
+  for (const EndRow* end = ends; end < ends + num_ends; ++end) {
+    const auto x0 = hn::Set(d, end->of_x[0]), x1 = hn::Set(d, end->of_x[1]);
+    const auto y0 = hn::Set(d, end->of_y[0]), y1 = hn::Set(d, end->of_y[1]);
+    const float* const point0 = point_rows + end->points[0] * 2 * stride;
+    const float* const point1 = point_rows + end->points[1] * 2 * stride;
+    float* const row = jacobian + end->cell * stride;
     for (size_t column = 0; column < stride; column += lanes) {
-      auto sum = hn::Zero(d);
-      for (uint32_t i = begin; i < ends_end[cell]; ++i) {
-        for (size_t k = 0; k < 2; ++k) {
-          const float* const of_point = point_rows + ends[i].points[k] * 2 * stride + column;
-          sum = hn::MulAdd(hn::Set(d, ends[i].of_x[k]), hn::Load(d, of_point), sum);
-          sum = hn::MulAdd(hn::Set(d, ends[i].of_y[k]), hn::Load(d, of_point + stride), sum);
-        }
-      }
-      hn::Store(sum, d, jacobian + column);
+      auto sum = hn::Load(d, row + column);
+      sum = hn::MulAdd(x0, hn::Load(d, point0 + column), sum);
+      sum = hn::MulAdd(y0, hn::Load(d, point0 + stride + column), sum);
+      sum = hn::MulAdd(x1, hn::Load(d, point1 + column), sum);
+      sum = hn::MulAdd(y1, hn::Load(d, point1 + stride + column), sum);
+      hn::Store(sum, d, row + column);
     }
-    begin = ends_end[cell];
   }
 }
 
@@ -234,18 +282,28 @@ std::array<float, kBlurRadius + 1> make_kernel() {
 
 const std::array<float, kBlurRadius + 1> kBlurKernel = make_kernel();
 
+HWY_EXPORT(place_ends);
+HWY_EXPORT(subtract_observed);
 HWY_EXPORT(blur_cells);
 HWY_EXPORT(add_up_ends);
 HWY_EXPORT(add_near_rows);
 HWY_EXPORT(transposed_product);
 
+CellBox place_ends(const SpanEnds& ends, const CellGrid& grid, const PlacedEnds& placed) {
+  return HWY_DYNAMIC_DISPATCH(place_ends)(ends, grid, placed);
+}
+
+void subtract_observed(const ObservedCells& cells, float* difference, size_t stride, size_t height, size_t width) {
+  HWY_DYNAMIC_DISPATCH(subtract_observed)(cells, difference, stride, height, width);
+}
+
 double blur_cells(const float* difference, size_t stride, size_t width, size_t height, float* half, float* blurred) {
   return HWY_DYNAMIC_DISPATCH(blur_cells)(difference, stride, width, height, half, blurred);
 }
 
-void add_up_ends(const EndRow* ends, const uint32_t* ends_end, size_t num_cells, const float* point_rows, size_t stride,
+void add_up_ends(const EndRow* ends, size_t num_ends, const float* point_rows, size_t stride, size_t num_cells,
                  float* jacobian) {
-  HWY_DYNAMIC_DISPATCH(add_up_ends)(ends, ends_end, num_cells, point_rows, stride, jacobian);
+  HWY_DYNAMIC_DISPATCH(add_up_ends)(ends, num_ends, point_rows, stride, num_cells, jacobian);
 }
 
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near) {

@@ -51,12 +51,6 @@ class LensDerivative {
   float fx_, fy_;
 };
 
-// An end of a span, and its cell.
-struct CellEnd {
-  int cell_x, cell_y;
-  EndRow row;
-};
-
 }  // namespace
 
 struct CoverageLikelihood::Impl {
@@ -91,9 +85,7 @@ struct CoverageLikelihood::Scratch::Impl {
   std::vector<OutlineSpans> spans;      // [C]
   SkinDerivative skin_derivative;
   CoverageDifference difference;
-  std::vector<CellEnd> ends;        // in the order of their rows
-  std::vector<EndRow> sorted_ends;  // by number of their cell
-  std::vector<uint32_t> ends_end;   // [cells] in sorted_ends
+  std::vector<EndRow> ends;
 
   // Vertices that ends lie between, each once.
   static constexpr uint32_t kNone = 0xffffffff;
@@ -103,7 +95,6 @@ struct CoverageLikelihood::Scratch::Impl {
   AlignedFloats point_rows;
 
   uint32_t point_of(uint32_t vertex);
-  size_t sort_ends();
 };
 
 uint32_t CoverageLikelihood::Scratch::Impl::point_of(uint32_t vertex) {
@@ -114,21 +105,6 @@ uint32_t CoverageLikelihood::Scratch::Impl::point_of(uint32_t vertex) {
     skin_derivative.prefetch(vertex);
   }
   return point;
-}
-
-// By number of the cell, counting how many each has; ends of a cell stay in their order. Returns the number of cells.
-size_t CoverageLikelihood::Scratch::Impl::sort_ends() {
-  const size_t num_cells = difference.number_cells();
-  ends_end.assign(num_cells, 0);
-  const auto cell_of = [&](const CellEnd& end) {
-    return static_cast<size_t>(difference.number_of(end.cell_x, end.cell_y));
-  };
-  for (const CellEnd& end : ends) ++ends_end[cell_of(end)];
-  uint32_t total = 0;
-  for (uint32_t& next : ends_end) next = std::exchange(total, total + next);
-  sorted_ends.resize(ends.size());
-  for (const CellEnd& end : ends) sorted_ends[ends_end[cell_of(end)]++] = end.row;
-  return num_cells;
 }
 
 CoverageLikelihood::Scratch::Scratch(const CoverageLikelihood& likelihood) : owner_(likelihood.impl_) {
@@ -204,24 +180,6 @@ CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observ
 
 namespace {
 
-// Draws a projected body's coverage, less the observed one, into `difference`; calls on_end(end, cell x, cell y, by)
-// for every end inside the picture: moving it to the right by 1 px changes its cell's coverage by `by`.
-template <class OnEnd>
-void draw_difference(OutlineSpans& spans, const PinholeCamera& camera, const CoverageEvidence::Raster& raster,
-                     int rows_per_cell, CoverageDifference& difference, OnEnd&& on_end) {
-  const auto width = static_cast<float>(camera.width);
-  const float step = static_cast<float>(raster.cell) / static_cast<float>(rows_per_cell);
-  const float by = step / (static_cast<float>(raster.cell) * static_cast<float>(raster.cell));
-  spans.for_each_span([&](int row, const auto& left, const auto& right) {
-    const float begin = std::max(left.x(), 0.0f), end = std::min(right.x(), width);
-    if (!(begin < end)) return;
-    const int cell_y = row / rows_per_cell;
-    difference.add_span(cell_y, begin, end);
-    if (left.x() > 0) on_end(left.end(), difference.column_of(left.x()), cell_y, -by);
-    if (right.x() < width) on_end(right.end(), difference.column_of(right.x()), cell_y, by);
-  });
-}
-
 SampledRows rows_of(const PinholeCamera& camera, int cell, int rows_per_cell) {
   const float step = static_cast<float>(cell) / static_cast<float>(rows_per_cell);
   return {
@@ -229,6 +187,19 @@ SampledRows rows_of(const PinholeCamera& camera, int cell, int rows_per_cell) {
 }
 
 }  // namespace
+
+// Draws the difference seen by one camera; false where the body is not seen.
+bool CoverageLikelihood::draw(size_t camera_idx, const CoverageEvidence::Raster& raster, std::span<const double> pose,
+                              Scratch::Impl& s) const {
+  const ProjectedSkin& skin = impl_->views[camera_idx].skin;
+  const PinholeCamera& camera = impl_->cameras[camera_idx];
+  s.difference.start(raster, camera.width, impl_->rows_per_cell);
+  s.pixels.resize(skin.num_slots());
+  if (!skin.project_to_pixels(pose, s.pixels, s.projected)) return false;
+  s.spans[camera_idx].scan(s.pixels, rows_of(camera, raster.cell, impl_->rows_per_cell), s.projected.some_unseen);
+  s.difference.add_model(s.spans[camera_idx].ends());
+  return true;
+}
 
 std::vector<double> CoverageLikelihood::residuals(const CoverageEvidence& evidence, Blur blur,
                                                   std::span<const double> pose, Scratch& scratch) const {
@@ -239,16 +210,8 @@ std::vector<double> CoverageLikelihood::residuals(const CoverageEvidence& eviden
   for (size_t c = 0; c < impl_->views.size(); ++c) {
     const CoverageEvidence::View& evident = evidence.views[c];
     if (evident.trust <= 0) continue;
-    const Impl::View& view = impl_->views[c];
     const CoverageEvidence::Raster& raster = evident.rasters[static_cast<size_t>(blur)];
-    s.difference.start(raster, impl_->rows_per_cell);
-    if (view.skin.project(pose, s.projected)) {
-      s.pixels.resize(view.skin.num_slots());
-      view.skin.copy_pixels(s.projected, s.pixels);
-      s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell), s.projected.some_unseen);
-      draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference,
-                      [](const SpanEnd&, int, int, float) {});
-    }
+    (void)draw(c, raster, pose, s);
     residual[c] = outline_scale(raster.cell) * s.difference.finish();
   }
   return residual;
@@ -306,26 +269,25 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
     if (evident.trust <= 0) continue;
     const Impl::View& view = impl_->views[c];
     const CoverageEvidence::Raster& raster = evident.rasters[static_cast<size_t>(blur)];
-    s.difference.start(raster, impl_->rows_per_cell);
-    if (view.skin.project(pose, s.projected)) {
-      s.pixels.resize(view.skin.num_slots());
-      view.skin.copy_pixels(s.projected, s.pixels);
-      s.spans[c].scan(s.pixels, rows_of(impl_->cameras[c], raster.cell, impl_->rows_per_cell), s.projected.some_unseen);
+    if (draw(c, raster, pose, s)) {
+      const float step = static_cast<float>(raster.cell) / static_cast<float>(impl_->rows_per_cell);
+      const float by = step / (static_cast<float>(raster.cell) * static_cast<float>(raster.cell));
+      const SpanEnds ends = s.spans[c].ends();
+      const auto cell_of_end = s.difference.number_cells();
       s.ends.clear();
       s.points.clear();
-      draw_difference(s.spans[c], impl_->cameras[c], raster, impl_->rows_per_cell, s.difference,
-                      [&](const SpanEnd& end, int cell_x, int cell_y, float by) {
-                        s.difference.mark_end(cell_x, cell_y);
-                        by *= s.difference.confidence(cell_x, cell_y);
-                        const float of_a = by * (1 - end.t), of_b = by * end.t;
-                        const auto vertex_of_slot = view.skin.vertex_of_slot();
-                        s.ends.push_back({cell_x,
-                                          cell_y,
-                                          {.points = {s.point_of(vertex_of_slot[end.vertex_a]),
-                                                      s.point_of(vertex_of_slot[end.vertex_b])},
-                                           .of_x = {of_a, of_b},
-                                           .of_y = {-end.dx_dy * of_a, -end.dx_dy * of_b}}});
-                      });
+      for (size_t i = 0; i < ends.count; ++i) {
+        if (cell_of_end[i] < 0) continue;
+        const auto cell = static_cast<size_t>(cell_of_end[i]);
+        const OutlineSpans::OnEdge at = s.spans[c].edge_of(i);
+        const float moves = -ends.side[i] * by * s.difference.confidence(cell);
+        const float of_a = moves * (1 - at.t), of_b = moves * at.t;
+        const auto vertex_of_slot = view.skin.vertex_of_slot();
+        s.ends.push_back({.cell = static_cast<uint32_t>(cell),
+                          .points = {s.point_of(vertex_of_slot[at.vertex_a]), s.point_of(vertex_of_slot[at.vertex_b])},
+                          .of_x = {of_a, of_b},
+                          .of_y = {-at.dx_dy * of_a, -at.dx_dy * of_b}});
+      }
       for (const uint32_t vertex : s.points) s.point_of_vertex[vertex] = Scratch::Impl::kNone;
       s.skin_derivative.set_pose(pose, impl_->cameras[c].cam_from_world);
       s.skin_derivative.set_points(s.points);
@@ -334,8 +296,7 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
       const size_t stride = s.skin_derivative.row_stride();
       s.point_rows.resize(std::max(s.point_rows.size(), 2 * s.points.size() * stride));
       s.skin_derivative.find_rows(s.projections, s.point_rows.data());
-      const size_t num_cells = s.sort_ends();
-      add_up_ends(s.sorted_ends.data(), s.ends_end.data(), num_cells, s.point_rows.data(), stride,
+      add_up_ends(s.ends.data(), s.ends.size(), s.point_rows.data(), stride, s.difference.num_end_cells(),
                   s.difference.jacobian(stride));
     }
     const double weight = evident.trust / evidence.noise[c] * outline_scale(raster.cell);

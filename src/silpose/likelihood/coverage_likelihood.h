@@ -20,6 +20,7 @@
 #include <span>
 #include <vector>
 
+#include "silpose/base/aligned_floats.h"
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/image/image.h"
@@ -35,10 +36,14 @@ inline constexpr std::array<int, 5> kBlurSigma = {2, 4, 8, 16, 32};
 struct CoverageEvidence {
   static constexpr double kSubjectHeight = 280;  // pixels
   struct Raster {
-    int cell = 0;             // pixels a side
-    Image<float> observed;    // [ceil(height / cell), ceil(width / cell)] covered part, 0 to 1
-    Image<float> confidence;  // the same size; empty: 1 everywhere
-    Box occupied;             // cells with anything observed
+    int cell = 0;                   // pixels a side
+    int width = 0, height = 0;      // cells
+    std::vector<float> observed;    // by at(): covered part, 0 to 1
+    std::vector<float> confidence;  // the same; empty: 1 everywhere
+    Box occupied;                   // cells with anything observed
+    // Column by column; below each column are zeros, as many as a vector register may read beyond it.
+    [[nodiscard]] size_t stride() const { return static_cast<size_t>(height) + AlignedFloats::kLanes; }
+    [[nodiscard]] size_t at(int x, int y) const { return static_cast<size_t>(x) * stride() + static_cast<size_t>(y); }
   };
   struct View {
     double trust = 0;                               // 0: this camera has no say
@@ -128,6 +133,9 @@ class CoverageLikelihood {
   [[nodiscard]] std::span<const PinholeCamera> cameras() const;
 
  private:
+  bool draw(size_t camera_idx, const CoverageEvidence::Raster& raster, std::span<const double> pose,
+            Scratch::Impl& s) const;
+
   std::shared_ptr<const Impl> impl_;
 };
 

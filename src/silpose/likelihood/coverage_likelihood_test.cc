@@ -48,10 +48,10 @@ TEST(CoverageRaster, CountsCoveredPartsOfCells) {
     ....
   )"));
   const auto raster = coverage_raster(observation, 2);
-  EXPECT_EQ(raster.observed.width(), 2);
-  EXPECT_FLOAT_EQ(raster.observed.at(0, 0), 1.0f);
-  EXPECT_FLOAT_EQ(raster.observed.at(0, 1), 0.25f);
-  EXPECT_FLOAT_EQ(raster.observed.at(1, 0), 0.0f);
+  EXPECT_EQ(raster.width, 2);
+  EXPECT_FLOAT_EQ(raster.observed[raster.at(0, 0)], 1.0f);
+  EXPECT_FLOAT_EQ(raster.observed[raster.at(0, 1)], 0.25f);
+  EXPECT_FLOAT_EQ(raster.observed[raster.at(1, 0)], 0.0f);
   EXPECT_EQ(raster.occupied, (Box{0, 0, 1, 2}));
 }
 
@@ -73,9 +73,20 @@ TEST(CoverageDifference, CountsSquaredPixelsAlongTheOutline) {
   }
   for (const int cell : {2, 4, 8}) {
     const auto raster = coverage_raster(observation_of(mask), cell);
+    std::vector<float> x, side;
+    std::vector<int32_t> row;
+    for (int r = 128 / cell; r < 384 / cell; ++r) {
+      x.insert(x.end(), {65, 193});
+      side.insert(side.end(), {1, -1});
+      row.insert(row.end(), {r, r});
+    }
+    const size_t count = x.size();
+    x.resize(count + kSpanSpare);
+    side.resize(x.size());
+    row.resize(x.size());
     CoverageDifference difference;
-    difference.start(raster, 2);
-    for (int row = 128 / cell; row < 384 / cell; ++row) difference.add_span(row / 2, 65, 193);
+    difference.start(raster, 256, 2);
+    difference.add_model({x.data(), side.data(), row.data(), nullptr, count});
     const double scale = 2 * std::sqrt(kPi) * cell * cell * cell;
     EXPECT_NEAR(scale * difference.finish(), 256, 20) << "cells of " << cell;
   }

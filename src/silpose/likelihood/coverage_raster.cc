@@ -32,31 +32,31 @@ CoverageEvidence::Raster coverage_raster(const Observation& observation, int cel
   const Mask& mask = observation.mask;
   CoverageEvidence::Raster raster;
   raster.cell = cell;
-  const int width = cells_along(mask.width(), cell), height = cells_along(mask.height(), cell);
-  raster.observed = Image<float>(width, height);
+  raster.width = cells_along(mask.width(), cell);
+  raster.height = cells_along(mask.height(), cell);
+  raster.observed.resize(raster.at(raster.width, 0));
   const float one_pixel = 1.0f / static_cast<float>(cell * cell);
   const Box& box = observation.box;
   raster.occupied = {box.x / cell, box.y / cell, (box.x + box.width - 1) / cell - box.x / cell + 1,
                      (box.y + box.height - 1) / cell - box.y / cell + 1};
   for (int y = box.y; y < box.y + box.height; ++y) {
     const auto words = mask.row(y);
-    const auto cells = raster.observed.row(y / cell);
     for (int x = raster.occupied.x; x < raster.occupied.x + raster.occupied.width; ++x) {
-      cells[static_cast<size_t>(x)] += one_pixel * static_cast<float>(count_set(words, x * cell, (x + 1) * cell));
+      raster.observed[raster.at(x, y / cell)] +=
+          one_pixel * static_cast<float>(count_set(words, x * cell, (x + 1) * cell));
     }
   }
   if (!observation.confidence.empty()) {
     check(observation.confidence.width() == mask.width() && observation.confidence.height() == mask.height(),
           "coverage_raster: confidence of {}x{} for a mask of {}x{}", observation.confidence.width(),
           observation.confidence.height(), mask.width(), mask.height());
-    raster.confidence = Image<float>(width, height);
+    raster.confidence.resize(raster.observed.size());
     for (int y = 0; y < mask.height(); ++y) {
       const auto row = observation.confidence.row(y);
-      const auto cells = raster.confidence.row(y / cell);
-      for (int cell_x = 0, x = 0; cell_x < width; ++cell_x) {
+      for (int cell_x = 0, x = 0; cell_x < raster.width; ++cell_x) {
         int sum = 0;
         for (const int end = std::min(x + cell, mask.width()); x < end; ++x) sum += row[static_cast<size_t>(x)];
-        cells[static_cast<size_t>(cell_x)] += static_cast<float>(sum) * (one_pixel / 255.0f);
+        raster.confidence[raster.at(cell_x, y / cell)] += static_cast<float>(sum) * (one_pixel / 255.0f);
       }
     }
   }

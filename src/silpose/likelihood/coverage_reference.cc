@@ -99,7 +99,7 @@ struct CellDerivative {
 
 void add_view(const BodyModel& body, const PinholeCamera& camera, const CoverageEvidence::Raster& raster, double weight,
               std::span<const double> pose, int rows_per_cell, NormalEquations& equations) {
-  const int width = raster.observed.width(), height = raster.observed.height();
+  const int width = raster.width, height = raster.height;
   const double cell = raster.cell, step = cell / rows_per_cell;
   const auto vertices = skin_vertices(body, pose);
   std::vector<Eigen::Vector2f> pixels(vertices.size());
@@ -109,7 +109,7 @@ void add_view(const BodyModel& body, const PinholeCamera& camera, const Coverage
 
   Image<double> difference(width, height);
   for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) difference.at(x, y) = -static_cast<double>(raster.observed.at(x, y));
+    for (int x = 0; x < width; ++x) difference.at(x, y) = -static_cast<double>(raster.observed[raster.at(x, y)]);
   }
   const PointMotion motion(body.skeleton, pose);
   std::vector<CellDerivative> jacobian;  // cells that hold an end
@@ -136,10 +136,10 @@ void add_view(const BodyModel& body, const PinholeCamera& camera, const Coverage
   }
   if (!raster.confidence.empty()) {
     for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) difference.at(x, y) *= static_cast<double>(raster.confidence.at(x, y));
+      for (int x = 0; x < width; ++x) difference.at(x, y) *= static_cast<double>(raster.confidence[raster.at(x, y)]);
     }
     for (CellDerivative& derivative : jacobian) {
-      derivative.row *= static_cast<double>(raster.confidence.at(derivative.x, derivative.y));
+      derivative.row *= static_cast<double>(raster.confidence[raster.at(derivative.x, derivative.y)]);
     }
   }
 

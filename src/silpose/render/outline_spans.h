@@ -5,28 +5,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "silpose/render/silhouette.h"
+#include "silpose/render/span_kernels.h"
 
 namespace silpose {
-
-// Where an edge of the outline crosses a row.
-struct SpanEnd {
-  float x = 0;      // image pixels
-  float dx_dy = 0;  // of the edge, along the outline
-  float t = 0;      // the crossing is (1 - t) * vertex a + t * vertex b
-  uint32_t vertex_a = 0, vertex_b = 0;
-};
-
-// Rows y = first + r * step, r = 0 .. count - 1, in image pixels.
-struct SampledRows {
-  float first = 0, step = 1;
-  int count = 0;
-};
 
 class OutlineSpans {
  public:
@@ -36,88 +22,55 @@ class OutlineSpans {
   // `some_unseen` tells whether there may be any.
   void scan(std::span<const Eigen::Vector2f> pixels, const SampledRows& rows, bool some_unseen);
 
-  // Calls visit(row, left, right) for the spans inside, row by row, left to right; spans never overlap. What is visited
-  // has .x() of the end, in image pixels, and .end() with all that is known of it.
-  template <class Visit>
-  void for_each_span(Visit&& visit) const;
+  // The ends of the spans inside, in no particular order, until the next scan(). A row has as many beginnings as ends;
+  // left to right they take turns.
+  [[nodiscard]] SpanEnds ends() const {
+    return {end_x_.data(), end_side_.data(), end_row_.data(), end_edge_.data(), num_ends_};
+  }
 
-  // What scan() works on: an edge whose two faces are turned to different sides, or that has one only.
-  struct OutlineEdge {
-    uint32_t from, to;
-    int change;  // of the winding number, crossing it where it runs down
+  // The edge on which an end lies, and where: at (1 - t) * vertex a + t * vertex b.
+  struct OnEdge {
+    uint32_t vertex_a = 0, vertex_b = 0;
+    float t = 0;
+    float dx_dy = 0;  // of the edge, along the outline
   };
+  [[nodiscard]] OnEdge edge_of(size_t end_idx) const {
+    const auto edge = static_cast<size_t>(end_edge_[end_idx]);
+    const float y = rows_.first + static_cast<float>(end_row_[end_idx]) * rows_.step;
+    return {static_cast<uint32_t>(vertex_a_[edge]), static_cast<uint32_t>(vertex_b_[edge]),
+            (y - top_y_[edge]) * inverse_height_[edge], dx_dy_[edge]};
+  }
 
  private:
-  struct Edge {
-    uint32_t vertex_a, vertex_b;  // a above b
-    int change;                   // of the winding number, to the right of it
-    int row_begin, row_end;       // that it crosses
-    float top_x, top_y, dx_dy, inverse_height;
-  };
-  // A crossing is one number, so that sorting a row moves little: x in the upper half, as an integer of the same order;
-  // then the edge; then the change, plus 2, in the lowest three bits.
-  using Crossing = uint64_t;
-  class End {
-   public:
-    End(const OutlineSpans& spans, Crossing crossing, int row) : spans_(&spans), crossing_(crossing), row_(row) {}
-    [[nodiscard]] float x() const { return x_of(crossing_); }
-    [[nodiscard]] SpanEnd end() const;
-
-   private:
-    const OutlineSpans* spans_;
-    Crossing crossing_;
-    int row_;
-  };
-  static Crossing crossing_of(float x, uint32_t edge, int change) {
-    const auto bits = std::bit_cast<uint32_t>(x);
-    const uint32_t ordered = bits ^ (static_cast<uint32_t>(-static_cast<int32_t>(bits >> 31)) | 0x80000000u);
-    return static_cast<uint64_t>(ordered) << 32 | (edge << 3 | static_cast<uint32_t>(change + 2));
-  }
-  static float x_of(Crossing crossing) {
-    const auto ordered = static_cast<uint32_t>(crossing >> 32);
-    const uint32_t mask = ordered >> 31 ? 0x80000000u : 0xffffffffu;
-    return std::bit_cast<float>(ordered ^ mask);
-  }
-  static int change_of(Crossing crossing) { return static_cast<int>(crossing & 7) - 2; }
-  [[nodiscard]] float y_below(const Edge& edge, int row) const {
-    return rows_.first + static_cast<float>(row) * rows_.step - edge.top_y;
-  }
   void find_outline(std::span<const Eigen::Vector2f> pixels);
   void find_outline_among_seen(std::span<const Eigen::Vector2f> pixels);
-  void add_outline(uint32_t from, uint32_t to, int change) { outline_[num_outline_++] = {from, to, change}; }
-  size_t find_edges(std::span<const Eigen::Vector2f> pixels);
-  void sort_rows();
+  void add_outline(uint32_t from, uint32_t to, int change);
+  RowEdges row_edges() {
+    return {vertex_a_.data(), vertex_b_.data(), change_.data(), row_begin_.data(),     row_end_.data(),
+            top_x_.data(),    top_y_.data(),    dx_dy_.data(),  inverse_height_.data()};
+  }
+  size_t group_rows(size_t num_edges);
+  void find_ends(size_t num_edges);
 
   const EdgeTopology* topology_;
   SampledRows rows_;
-  std::vector<Eigen::Vector2f> strip_points_;  // [positions + padding]
-  std::vector<uint8_t> winding_;               // [positions / 8 + padding] bits: the strip order winds anticlockwise
-  std::vector<uint64_t> found_;                // scratch
-  std::vector<int8_t> facing_;                 // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
-  std::vector<OutlineEdge> outline_;           // [edges + padding] the first few: whose two faces differ
+  std::vector<uint8_t> winding_;  // [positions / 8 + spare] bits: the strip order winds anticlockwise
+  std::vector<uint64_t> found_;   // scratch
+  std::vector<int8_t> facing_;    // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
+  std::vector<uint32_t> outline_from_, outline_to_;  // [edges + spare] the first few
+  std::vector<int32_t> outline_change_;
   size_t num_outline_ = 0;
-  std::vector<Edge> edges_;          // [edges] the first few: of the outline, that cross rows
-  std::vector<uint32_t> row_start_;  // [rows + 1] crossings of row r: row_start_[r] to row_start_[r + 1]
-  std::vector<Crossing> crossings_;  // by row, left to right
+  // [edges + spare] the first few: of the outline, that cross rows.
+  std::vector<int32_t> vertex_a_, vertex_b_, change_, row_begin_, row_end_;
+  std::vector<float> top_x_, top_y_, dx_dy_, inverse_height_;
+  std::vector<uint32_t> next_;           // [rows + 1] of each row, in grouped_; before: how many more edges than above
+  std::vector<RowGroup> groups_;         // [rows / kGroupRows]
+  std::vector<Crossing> crossings_;      // [crossings + spare] edge by edge
+  std::vector<int32_t> crossing_row_;    // [crossings + spare]
+  std::vector<GroupCrossings> grouped_;  // by group, then of each row one after another
+  std::vector<int32_t> end_row_, end_edge_;  // [ends + spare]
+  std::vector<float> end_x_, end_side_;
+  size_t num_ends_ = 0;
 };
-
-inline SpanEnd OutlineSpans::End::end() const {
-  const Edge& edge = spans_->edges_[static_cast<uint32_t>(crossing_) >> 3];
-  return {x(), edge.dx_dy, spans_->y_below(edge, row_) * edge.inverse_height, edge.vertex_a, edge.vertex_b};
-}
-
-template <class Visit>
-void OutlineSpans::for_each_span(Visit&& visit) const {
-  for (int row = 0; row < rows_.count; ++row) {
-    int winding = 0;
-    Crossing start = 0;
-    for (uint32_t i = row_start_[static_cast<size_t>(row)]; i < row_start_[static_cast<size_t>(row) + 1]; ++i) {
-      const Crossing crossing = crossings_[i];
-      if (winding == 0) start = crossing;
-      winding += change_of(crossing);
-      if (winding == 0) visit(row, End(*this, start, row), End(*this, crossing, row));
-    }
-  }
-}
 
 }  // namespace silpose

@@ -106,6 +106,24 @@ bool ProjectedSkin::project_to_grid(std::span<const double> pose, const Window& 
   return true;
 }
 
+bool ProjectedSkin::project_to_pixels(std::span<const double> pose, std::span<Eigen::Vector2f> pixels,
+                                      Scratch& scratch) const {
+  check(pixels.size() == num_slots(), "ProjectedSkin: {} slots, room for {}", num_slots(), pixels.size());
+  if (!camera_->has_distortion() && is_finite(pose)) {
+    set_matrices(pose, scratch);
+    scratch.some_unseen = false;
+    if (skin_to_pixels(view(scratch), pixels.data()->data())) return true;
+  }
+  if (!project(pose, scratch)) return false;
+  Eigen::Vector2f* pixel = pixels.data();
+  for (size_t c = 0; c < chunks_.size(); ++c) {
+    for (size_t lane = 0; lane < kChunkLanes; ++lane) {
+      *pixel++ = {scratch.x[c].lane[lane], scratch.y[c].lane[lane]};
+    }
+  }
+  return true;
+}
+
 bool ProjectedSkin::project(std::span<const double> pose, Scratch& scratch) const {
   if (!is_finite(pose)) return false;
   set_matrices(pose, scratch);
@@ -147,16 +165,6 @@ bool ProjectedSkin::leave_out_unseen(Scratch& scratch) const {
   }
   scratch.bounds = bounds;
   return bounds.x0 <= bounds.x1;
-}
-
-void ProjectedSkin::copy_pixels(const Scratch& scratch, std::span<Eigen::Vector2f> pixels) const {
-  check(pixels.size() == num_slots(), "ProjectedSkin: {} slots, room for {}", num_slots(), pixels.size());
-  Eigen::Vector2f* pixel = pixels.data();
-  for (size_t c = 0; c < chunks_.size(); ++c) {
-    for (size_t lane = 0; lane < kChunkLanes; ++lane) {
-      *pixel++ = {scratch.x[c].lane[lane], scratch.y[c].lane[lane]};
-    }
-  }
 }
 
 void ProjectedSkin::round(const Window& window, Scratch& scratch) const {

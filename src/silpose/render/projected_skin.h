@@ -43,11 +43,11 @@ class ProjectedSkin {
   // The same for a window that is known beforehand: only scratch.points is left, as round() makes them.
   bool project_to_grid(std::span<const double> pose, const Window& window, Scratch& scratch) const;
 
+  // The same, to pixels [slots], NaN where unseen, whatever the window; of `scratch` only some_unseen is left.
+  bool project_to_pixels(std::span<const double> pose, std::span<Eigen::Vector2f> pixels, Scratch& scratch) const;
+
   // Rounds the pixels to a window's grid, into scratch.points.
   void round(const Window& window, Scratch& scratch) const;
-
-  // The pixels [slots] that project() left; NaN where unseen.
-  void copy_pixels(const Scratch& scratch, std::span<Eigen::Vector2f> pixels) const;
 
  private:
   void set_matrices(std::span<const double> pose, Scratch& scratch) const;

@@ -78,6 +78,16 @@ bool skin_and_round(const SkinView& skin, const GridAxis& x_axis, const GridAxis
   return hn::AllTrue(kFloats, all_seen);
 }
 
+bool skin_to_pixels(const SkinView& skin, float* HWY_RESTRICT xy) {
+  const auto nearest_seen = hn::Set(kFloats, static_cast<float>(PinholeCamera::kNear));
+  auto all_seen = hn::FirstN(kFloats, kStep);
+  for_each_projected(skin, [&](size_t c, size_t lane, FloatsV x, FloatsV y, FloatsV depth) HWY_ATTR {
+    all_seen = hn::And(all_seen, hn::Ge(depth, nearest_seen));
+    hn::StoreInterleaved2(x, y, kFloats, xy + 2 * (c * kChunkLanes + lane));
+  });
+  return hn::AllTrue(kFloats, all_seen);
+}
+
 void distort_points(const LensFloats& lens, size_t num_chunks, ChunkFloats* HWY_RESTRICT inout_x,
                     ChunkFloats* HWY_RESTRICT inout_y) {
   const auto number = [](float value) HWY_ATTR { return hn::Set(kFloats, value); };
@@ -139,6 +149,7 @@ namespace {
 
 HWY_EXPORT(skin_and_project);
 HWY_EXPORT(skin_and_round);
+HWY_EXPORT(skin_to_pixels);
 HWY_EXPORT(distort_points);
 HWY_EXPORT(bounds_of_points);
 HWY_EXPORT(round_points);
@@ -152,6 +163,8 @@ void skin_and_project(const SkinView& skin, ChunkFloats* x, ChunkFloats* y, Chun
 bool skin_and_round(const SkinView& skin, const GridAxis& x_axis, const GridAxis& y_axis, GridPoint* points) {
   return HWY_DYNAMIC_DISPATCH(skin_and_round)(skin, x_axis, y_axis, points);
 }
+
+bool skin_to_pixels(const SkinView& skin, float* xy) { return HWY_DYNAMIC_DISPATCH(skin_to_pixels)(skin, xy); }
 
 void distort_points(const LensFloats& lens, size_t num_chunks, ChunkFloats* x, ChunkFloats* y) {
   HWY_DYNAMIC_DISPATCH(distort_points)(lens, num_chunks, x, y);

@@ -46,6 +46,9 @@ void skin_and_project(const SkinView& skin, ChunkFloats* x, ChunkFloats* y, Chun
 [[nodiscard]] bool skin_and_round(const SkinView& skin, const GridAxis& x_axis, const GridAxis& y_axis,
                                   GridPoint* points);
 
+// The same at once as pixels, x and y in turns. False as above.
+[[nodiscard]] bool skin_to_pixels(const SkinView& skin, float* xy);
+
 // Points of the plane z = 1 to pixels through a lens: fx, fy, cx, cy, then OpenCV's k1 k2 p1 p2 k3.
 struct LensFloats {
   float fx, fy, cx, cy;
