@@ -66,9 +66,9 @@ HWY_EXPORT(rows_of_points);
 SkinDerivative::SkinDerivative(const BodyModel& body)
     : body_(&body),
       stride_(AlignedFloats::padded(body.skeleton.dofs().size() + 1)),
-      world_from_joint_(body.skeleton.joints().size()),
       origin_(Eigen::Vector3f::Zero()),
-      origin_from_rest_(body.skeleton.joints().size(), Eigen::Matrix4f::Zero()) {
+      origin_from_rest_(body.skeleton.joints().size(), Eigen::Matrix4f::Zero()),
+      turn_and_shift_(body.skeleton.dofs().size()) {
   const SkinWeights& skin = body.skin;
   entry_start_ = skin.row_start;
   for (size_t v = 0; v < body.rest.vertices.size(); ++v) {
@@ -87,29 +87,31 @@ SkinDerivative::SkinDerivative(const BodyModel& body)
   motion_.resize(joints.size() * 6 * stride_);
 }
 
-void SkinDerivative::set_pose(std::span<const double> pose, const Rigid3& frame_from_world) {
+void SkinDerivative::set_pose(std::span<const double> pose, std::span<const Rigid3> world_from_joint,
+                              const Rigid3& frame_from_world) {
   const Skeleton& skeleton = body_->skeleton;
-  skeleton.forward_kinematics(pose, world_from_joint_);
-  const Eigen::Matrix3Xd axes = skeleton.dof_axes(pose, world_from_joint_);
-  const Eigen::Vector3d origin = frame_from_world * world_from_joint_[0].translation;
+  const Eigen::Matrix3Xd axes = skeleton.dof_axes(pose, world_from_joint);
+  const Eigen::Vector3d origin = frame_from_world * world_from_joint[0].translation;
   const Rigid3 origin_from_world = {frame_from_world.rotation, frame_from_world.translation - origin};
   origin_ = origin.cast<float>();
-  for (size_t j = 0; j < world_from_joint_.size(); ++j) {
-    const Rigid3 matrix = origin_from_world * (world_from_joint_[j] * body_->joint_from_rest[j]);
+  for (size_t j = 0; j < world_from_joint.size(); ++j) {
+    const Rigid3 matrix = origin_from_world * (world_from_joint[j] * body_->joint_from_rest[j]);
     origin_from_rest_[j].topRows<3>() << matrix.rotation.cast<float>(), matrix.translation.cast<float>();
   }
-  for (const MovedBy& moved : moved_by_) {
-    const Dof& dof = skeleton.dofs()[moved.dof_idx];
-    const Eigen::Vector3d axis = frame_from_world.rotation * axes.col(moved.dof_idx);
-    const Eigen::Vector3d centre =
-        origin_from_world * world_from_joint_[static_cast<size_t>(dof.joint_idx)].translation;
-    const Eigen::Vector3d turn = dof.is_translation ? Eigen::Vector3d::Zero() : axis;
-    const Eigen::Vector3d shift = dof.is_translation ? axis : centre.cross(axis);
-    float* const column = motion_.data() + moved.joint_idx * 6 * stride_ + moved.dof_idx;
-    for (size_t k = 0; k < 3; ++k) {
-      column[k * stride_] = static_cast<float>(turn[static_cast<Eigen::Index>(k)]);
-      column[(3 + k) * stride_] = static_cast<float>(shift[static_cast<Eigen::Index>(k)]);
+  for (size_t d = 0; d < turn_and_shift_.size(); ++d) {
+    const Dof& dof = skeleton.dofs()[d];
+    const Eigen::Vector3d axis = frame_from_world.rotation * axes.col(static_cast<Eigen::Index>(d));
+    if (dof.is_translation) {
+      turn_and_shift_[d] << Eigen::Vector3f::Zero(), axis.cast<float>();
+    } else {
+      const Eigen::Vector3d centre =
+          origin_from_world * world_from_joint[static_cast<size_t>(dof.joint_idx)].translation;
+      turn_and_shift_[d] << axis.cast<float>(), centre.cross(axis).cast<float>();
     }
+  }
+  for (const MovedBy& moved : moved_by_) {
+    float* const column = motion_.data() + moved.joint_idx * 6 * stride_ + moved.dof_idx;
+    for (size_t k = 0; k < 6; ++k) column[k * stride_] = turn_and_shift_[moved.dof_idx][static_cast<Eigen::Index>(k)];
   }
 }
 

@@ -17,8 +17,9 @@ class SkinDerivative {
  public:
   explicit SkinDerivative(const BodyModel& body);  // keeps a reference
 
-  // Takes a pose [D]. Positions are in the coordinates of `frame`.
-  void set_pose(std::span<const double> pose, const Rigid3& frame_from_world = {});
+  // Takes a pose [D] and its forward kinematics [J]. Positions are in the coordinates of `frame`.
+  void set_pose(std::span<const double> pose, std::span<const Rigid3> world_from_joint,
+                const Rigid3& frame_from_world = {});
 
   // Takes points [P], vertices of the mesh; after set_pose().
   void set_points(std::span<const uint32_t> vertices);
@@ -52,16 +53,16 @@ class SkinDerivative {
 
   const BodyModel* body_;
   size_t stride_;
-  std::vector<uint32_t> entry_start_;              // [V + 1]
-  std::vector<Entry> entries_;                     // a vertex and a joint that moves it
-  std::vector<MovedBy> moved_by_;                  // every joint with every DOF above it
-  std::vector<Rigid3> world_from_joint_;           // [J]
-  Eigen::Vector3f origin_;                         // near the body, so that moments about it stay exact
-  std::vector<Eigen::Matrix4f> origin_from_rest_;  // [J]
-  AlignedFloats motion_;                           // [J, 6, stride] turns x y z, shifts x y z; zero for other DOF
-  std::vector<Part> parts_;                        // of the points, one after another
-  std::vector<uint32_t> part_end_;                 // [P]
-  std::vector<Eigen::Vector3f> positions_;         // [P]
+  std::vector<uint32_t> entry_start_;                    // [V + 1]
+  std::vector<Entry> entries_;                           // a vertex and a joint that moves it
+  std::vector<MovedBy> moved_by_;                        // every joint with every DOF above it
+  Eigen::Vector3f origin_;                               // near the body, so that moments about it stay exact
+  std::vector<Eigen::Matrix4f> origin_from_rest_;        // [J]
+  std::vector<Eigen::Vector<float, 6>> turn_and_shift_;  // [D]
+  AlignedFloats motion_;                                 // [J, 6, stride] turns x y z, shifts x y z; zero for other DOF
+  std::vector<Part> parts_;                              // of the points, one after another
+  std::vector<uint32_t> part_end_;                       // [P]
+  std::vector<Eigen::Vector3f> positions_;               // [P]
 };
 
 }  // namespace silpose

@@ -16,7 +16,7 @@ TEST(SkinDerivative, AgreesWithFiniteDifferencesOfSkinning) {
   SkinDerivative derivative(body);
   const Rigid3 frame = {Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix(), {1, -2, 5}};
   const Eigen::Matrix3f turn = frame.rotation.cast<float>();
-  derivative.set_pose(pose, frame);
+  derivative.set_pose(pose, body.skeleton.forward_kinematics(pose), frame);
   const auto vertices = skin_vertices(body, pose);
   const Eigen::Vector3f g(0.3f, -1.0f, 0.6f), h(-2.0f, 0.5f, 0.1f);
   const uint32_t v = 5, w = static_cast<uint32_t>(vertices.size()) - 3;
