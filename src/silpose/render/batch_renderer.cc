@@ -6,6 +6,7 @@
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/render/outline_scan.h"
+#include "silpose/render/projected_mesh.h"
 #include "silpose/render/projected_skin.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/shape/normalised_silhouette.h"
@@ -18,6 +19,9 @@ struct PoseScratch {
   explicit PoseScratch(const EdgeTopology& topology) : outline(topology) {}
   ProjectedSkin::Scratch projected;
   OutlineScan outline;
+  // Only where some of the body is too near to be seen, which is rare: the reference's vertices, by slot.
+  ProjectedMesh cut;
+  std::vector<Eigen::Vector3f> vertices_in_world;
 };
 
 // Keeps scratch from one range of poses to the next, so that nothing is allocated once every thread has had its own.
@@ -50,8 +54,8 @@ struct BatchRenderer::Impl {
   Impl(std::shared_ptr<const BodyModel> the_body, PinholeCamera the_camera)
       : body(std::move(the_body)), camera(std::move(the_camera)), skin(*body, camera), topology(skin.faces()) {}
 
-  // project(pose, projected, outline) leaves a pose's points on the grid of the window that it returns, or nothing when
-  // it is not seen.
+  // project(pose, scratch) leaves a pose's points on the grid of the window that it returns, or nothing when it is not
+  // seen.
   template <class Project>
   void counts(const BatchView& poses, const Mask& observed, std::span<OutlineRenderer::Counts> out,
               const Project& project) const {
@@ -61,26 +65,67 @@ struct BatchRenderer::Impl {
     constexpr size_t kGrain = 32;
     parallel_for(poses.num_poses, kGrain, [&](size_t begin, size_t end) {
       std::unique_ptr<PoseScratch> scratch = pool.take(topology);
-      auto& [projected, outline] = *scratch;
       for (size_t n = begin; n < end; ++n) {
         out[n] = {};
         const std::span pose(poses.data + n * poses.stride, poses.num_dofs);
-        if (const std::optional<Window> window = project(pose, projected, outline)) {
-          outline.scan(projected.points, projected.some_unseen, window->width, window->height);
-          out[n] = outline.count(observed);
+        if (const std::optional<Window> window = project(pose, *scratch)) {
+          scan(*window, *scratch);
+          out[n] = scratch->outline.count(observed);
         }
       }
       pool.give_back(std::move(scratch));
     });
   }
 
+  // Where some of the body is too near to be seen: its faces cut, in pixels.
+  void cut(std::span<const double> pose, PoseScratch& scratch) const {
+    const std::vector<Eigen::Vector3f> vertices = skin_vertices(*body, pose);
+    scratch.vertices_in_world.clear();
+    for (const uint32_t vertex : skin.vertex_of_slot()) scratch.vertices_in_world.push_back(vertices[vertex]);
+    project_mesh(camera, scratch.vertices_in_world, skin.faces(), scratch.cut);
+  }
+
+  bool project(std::span<const double> pose, PoseScratch& scratch) const {
+    if (!skin.project(pose, scratch.projected)) return false;
+    if (!scratch.projected.some_unseen) return true;
+    cut(pose, scratch);
+    const auto bounds = pixel_bounds(scratch.cut.pixels);
+    scratch.projected.bounds = bounds.value_or(PixelBounds{});
+    return bounds.has_value();
+  }
+
+  void round(const Window& window, PoseScratch& scratch) const {
+    if (!scratch.projected.some_unseen) {
+      skin.round(window, scratch.projected);
+      return;
+    }
+    scratch.projected.points.resize(scratch.cut.pixels.size());
+    round_to_grid(scratch.cut.pixels, window, scratch.projected.points);
+  }
+
+  bool project_to_grid(std::span<const double> pose, const Window& window, PoseScratch& scratch) const {
+    if (!skin.project_to_grid(pose, window, scratch.projected)) return false;
+    if (scratch.projected.some_unseen) {
+      cut(pose, scratch);
+      round(window, scratch);
+    }
+    return true;
+  }
+
+  static void scan(const Window& window, PoseScratch& scratch) {
+    const bool some_unseen = scratch.projected.some_unseen;
+    scratch.outline.scan(scratch.projected.points, some_unseen, window.width, window.height,
+                         some_unseen ? std::span<const Face>(scratch.cut.cut_faces) : std::span<const Face>());
+  }
+
   // Bounds of the part inside the picture. Only a body cut by the picture's border needs drawing for it.
-  std::optional<PixelBounds> bounds_in_picture(ProjectedSkin::Scratch& projected, OutlineScan& outline) const {
-    const PixelBounds& bounds = projected.bounds;
+  std::optional<PixelBounds> bounds_in_picture(PoseScratch& scratch) const {
+    const PixelBounds& bounds = scratch.projected.bounds;
     if (bounds.x0 >= 0 && bounds.y0 >= 0 && bounds.x1 <= camera.width && bounds.y1 <= camera.height) return bounds;
-    skin.round({.width = camera.width, .height = camera.height}, projected);
-    outline.scan(projected.points, projected.some_unseen, camera.width, camera.height);
-    return outline.bounds();
+    const Window picture{.width = camera.width, .height = camera.height};
+    round(picture, scratch);
+    scan(picture, scratch);
+    return scratch.outline.bounds();
   }
 
   std::shared_ptr<const BodyModel> body;
@@ -100,20 +145,20 @@ void BatchRenderer::counts(const BatchView& poses, const Window& window, const M
   check(observed.width() == window.width && observed.height() == window.height,
         "BatchRenderer: mask of {}x{} for a window of {}x{}", observed.width(), observed.height(), window.width,
         window.height);
-  impl_->counts(poses, observed, out, [&](auto pose, auto& projected, auto&) -> std::optional<Window> {
-    if (!impl_->skin.project_to_grid(pose, window, projected)) return std::nullopt;
+  impl_->counts(poses, observed, out, [&](auto pose, auto& scratch) -> std::optional<Window> {
+    if (!impl_->project_to_grid(pose, window, scratch)) return std::nullopt;
     return window;
   });
 }
 
 void BatchRenderer::counts_cropped(const BatchView& poses, const Mask& observed_cropped,
                                    std::span<OutlineRenderer::Counts> out) const {
-  impl_->counts(poses, observed_cropped, out, [&](auto pose, auto& projected, auto& outline) -> std::optional<Window> {
-    if (!impl_->skin.project(pose, projected)) return std::nullopt;
-    const auto bounds = impl_->bounds_in_picture(projected, outline);
+  impl_->counts(poses, observed_cropped, out, [&](auto pose, auto& scratch) -> std::optional<Window> {
+    if (!impl_->project(pose, scratch)) return std::nullopt;
+    const auto bounds = impl_->bounds_in_picture(scratch);
     if (!bounds) return std::nullopt;
     const Window window = window_of(*bounds, observed_cropped.width(), observed_cropped.height());
-    impl_->skin.round(window, projected);
+    impl_->round(window, scratch);
     return window;
   });
 }

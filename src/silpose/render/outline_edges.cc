@@ -86,6 +86,8 @@ namespace {
 HWY_EXPORT(lay_strips);
 HWY_EXPORT(find_inner_edges);
 
+constexpr size_t kSpare = 16;  // the widest vector's: whole ones are read
+
 // 1 for triangles that wind clockwise on the screen or have no area, -1 for the others.
 int8_t facing_of(GridPoint a, GridPoint b, GridPoint c) {
   return int64_t{b.x - a.x} * (c.y - a.y) < int64_t{b.y - a.y} * (c.x - a.x) ? int8_t{-1} : int8_t{1};
@@ -101,7 +103,6 @@ void push(OutlineEdges::Edges& edges, GridPoint from, GridPoint to) {
 static_assert(sizeof(GridPoint) == 2 * sizeof(int32_t));  // x and y in turns
 
 OutlineEdges::OutlineEdges(const EdgeTopology& topology) : topology_(&topology) {
-  constexpr size_t kSpare = 16;  // the widest vector's: whole ones are read
   const StripOrder& strips = topology.strips;
   strip_points_.resize(strips.vertex.size());
   winding_.resize(strips.vertex.size() / 8 + kSpare);
@@ -112,10 +113,11 @@ OutlineEdges::OutlineEdges(const EdgeTopology& topology) : topology_(&topology) 
   border_.to.resize(topology.edges.faces.size() + kSpare);
 }
 
-void OutlineEdges::find(std::span<const GridPoint> points, bool some_unseen) {
+void OutlineEdges::find(std::span<const GridPoint> points, bool some_unseen, std::span<const Face> cut_faces) {
   check(points.size() >= topology_->num_vertices, "OutlineEdges: {} points for {} vertices", points.size(),
         topology_->num_vertices);
   inner_.count = border_.count = 0;
+  if (!cut_faces.empty()) add_faces(points, cut_faces);
   if (topology_->faces.empty()) return;
   if (some_unseen) {
     find_among_seen(points);
@@ -147,6 +149,24 @@ void OutlineEdges::find_among_seen(std::span<const GridPoint> points) {
     if (change == 0) continue;
     push(change == 2 || change == -2 ? inner_ : border_, points[change > 0 ? from : to],
          points[change > 0 ? to : from]);
+  }
+}
+
+void OutlineEdges::add_faces(std::span<const GridPoint> points, std::span<const Face> faces) {
+  const size_t room = topology_->edges.faces.size() + 3 * faces.size() + kSpare;
+  if (border_.from.size() < room) {
+    border_.from.resize(room);
+    border_.to.resize(room);
+  }
+  for (const Face& face : faces) {
+    check(std::max({face[0], face[1], face[2]}) < points.size(), "OutlineEdges: a cut face names a vertex of {}",
+          points.size());
+    const GridPoint a = points[face[0]], b = points[face[1]], c = points[face[2]];
+    if (a.unseen() || b.unseen() || c.unseen()) continue;
+    const bool turned = facing_of(a, b, c) < 0;
+    push(border_, a, turned ? c : b);
+    push(border_, turned ? c : b, turned ? b : c);
+    push(border_, turned ? b : c, a);
   }
 }
 

@@ -18,9 +18,10 @@ class OutlineEdges {
  public:
   explicit OutlineEdges(const EdgeTopology& topology);  // keeps a reference
 
-  // Finds the outline of the mesh whose vertices are projected to `points` [V]. Faces with an unseen vertex are left
-  // out; `some_unseen` tells whether there is any.
-  void find(std::span<const GridPoint> points, bool some_unseen);
+  // Finds the outline of the mesh whose vertices are projected to `points` [V, and more that only `cut_faces` name].
+  // Faces with an unseen vertex are left out; `some_unseen` tells whether there is any. What stands for them, the cut
+  // faces, are surfaces of their own: all their edges are of one face.
+  void find(std::span<const GridPoint> points, bool some_unseen, std::span<const Face> cut_faces = {});
 
   // Edges from[i] to to[i]. Crossing one changes the winding number by the same sign; by two where both faces count.
   struct Edges {
@@ -32,6 +33,7 @@ class OutlineEdges {
 
  private:
   void find_among_seen(std::span<const GridPoint> points);
+  void add_faces(std::span<const GridPoint> points, std::span<const Face> faces);
 
   const EdgeTopology* topology_;
   std::vector<GridPoint> strip_points_;  // [positions + padding]

@@ -230,9 +230,10 @@ void OutlineScan::resize(int width, int height) {
   height_ = height;
 }
 
-void OutlineScan::scan(std::span<const GridPoint> points, bool some_unseen, int width, int height) {
+void OutlineScan::scan(std::span<const GridPoint> points, bool some_unseen, int width, int height,
+                       std::span<const Face> cut_faces) {
   resize(width, height);
-  edges_.find(points, some_unseen);
+  edges_.find(points, some_unseen, cut_faces);
   ChangeRaster raster{.changes = changes_.data(),
                       .width = width,
                       .height = height,

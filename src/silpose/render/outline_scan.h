@@ -22,8 +22,9 @@ class OutlineScan {
  public:
   explicit OutlineScan(const EdgeTopology& topology) : edges_(topology) {}  // keeps a reference
 
-  // Scans the mesh whose vertices are projected to `points` [V]. `some_unseen` tells whether any is kUnseenPoint.
-  void scan(std::span<const GridPoint> points, bool some_unseen, int width, int height);
+  // Scans the mesh whose vertices are projected to `points`, as OutlineEdges::find() takes it.
+  void scan(std::span<const GridPoint> points, bool some_unseen, int width, int height,
+            std::span<const Face> cut_faces = {});
 
   // What is done with the scanned silhouette: set in a cleared mask of the scan's size, counted against one, or its box
   // of pixels found; nothing when it has none.

@@ -102,7 +102,7 @@ bool ProjectedSkin::project_to_grid(std::span<const double> pose, const Window& 
     }
   }
   if (!project(pose, scratch)) return false;
-  round(window, scratch);
+  if (!scratch.some_unseen) round(window, scratch);
   return true;
 }
 
@@ -171,10 +171,6 @@ void ProjectedSkin::round(const Window& window, Scratch& scratch) const {
   const GridAxis x_axis(window.x0, window.scale_x), y_axis(window.y0, window.scale_y);
   scratch.points.resize(num_slots());
   round_points(x_axis, y_axis, chunks_.size(), scratch.x.data(), scratch.y.data(), scratch.points.data());
-  if (!scratch.some_unseen) return;
-  for (size_t slot = 0; slot < num_slots(); ++slot) {
-    if (std::isnan(scratch.x[slot / kChunkLanes].lane[slot % kChunkLanes])) scratch.points[slot] = kUnseenPoint;
-  }
 }
 
 }  // namespace silpose

@@ -40,13 +40,14 @@ class ProjectedSkin {
   // Projects a pose [D]. False when nothing is seen, or when the pose has a number that is not finite.
   bool project(std::span<const double> pose, Scratch& scratch) const;
 
-  // The same for a window that is known beforehand: only scratch.points is left, as round() makes them.
+  // The same for a window that is known beforehand: scratch.points is left as round() makes them, unless some vertex is
+  // unseen; then they mean nothing.
   bool project_to_grid(std::span<const double> pose, const Window& window, Scratch& scratch) const;
 
   // The same, to pixels [slots], NaN where unseen, whatever the window; of `scratch` only some_unseen is left.
   bool project_to_pixels(std::span<const double> pose, std::span<Eigen::Vector2f> pixels, Scratch& scratch) const;
 
-  // Rounds the pixels to a window's grid, into scratch.points.
+  // Rounds the pixels to a window's grid, into scratch.points. REQUIRES: all are seen.
   void round(const Window& window, Scratch& scratch) const;
 
  private:

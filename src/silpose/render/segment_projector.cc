@@ -6,40 +6,17 @@ namespace silpose {
 namespace {
 
 constexpr double kMargin = 0.05;  // of the picture's view, on each side: room for the width of lines
-constexpr int kRaysPerSide = 16;  // where the view's bounds are looked for
 constexpr int kPieces = 48;       // of a distorted segment
 
 }  // namespace
 
-SegmentProjector::SegmentProjector(const PinholeCamera& camera) : camera_(camera) {
-  Eigen::Array2d least = Eigen::Array2d::Zero(), most = Eigen::Array2d::Zero();
-  const auto include = [&](double u, double v) {
-    const Eigen::Array2d slope = camera.ray_from_pixel({u, v}).head<2>().array();
-    least = least.min(slope);
-    most = most.max(slope);
-  };
-  for (int i = 0; i <= kRaysPerSide; ++i) {
-    const double u = camera.width * (i / double(kRaysPerSide)), v = camera.height * (i / double(kRaysPerSide));
-    include(u, 0);
-    include(u, camera.height);
-    include(0, v);
-    include(camera.width, v);
-  }
-  const Eigen::Array2d margin = kMargin * (most - least);
-  least -= margin;
-  most += margin;
-  half_spaces_ = {{0, 0, 1, -PinholeCamera::kNear},
-                  {1, 0, -least.x(), 0},
-                  {-1, 0, most.x(), 0},
-                  {0, 1, -least.y(), 0},
-                  {0, -1, most.y(), 0}};
-}
+SegmentProjector::SegmentProjector(const PinholeCamera& camera) : camera_(camera), view_(camera, kMargin) {}
 
 std::vector<Eigen::Vector2d> SegmentProjector::operator()(const Eigen::Vector3d& from,
                                                           const Eigen::Vector3d& to) const {
   const Eigen::Vector3d a = camera_.cam_from_world * from, b = camera_.cam_from_world * to;
   double begin = 0, end = 1;  // the part of it that is inside
-  for (const Eigen::Vector4d& half_space : half_spaces_) {
+  for (const Eigen::Vector4d& half_space : view_.half_spaces) {
     const double at_a = half_space.dot(a.homogeneous()), at_b = half_space.dot(b.homogeneous());
     if (at_a < 0 && at_b < 0) return {};
     if (at_a < 0) begin = std::max(begin, at_a / (at_a - at_b));

@@ -1,6 +1,5 @@
 // SegmentProjector: straight segments of the world as curves in a camera's picture, the lens' distortion respected.
-// Clipped before they are projected: to what lies before the camera, and to a little more than the picture shows (far
-// outside of it a distortion polynomial folds back, and would put lines where there are none).
+// Clipped before they are projected: to what lies before the camera, and to a little more than the picture shows.
 // Source: clipping against half-spaces, Liang and Barsky (references.bib: liang1984).
 // Threads: immutable; const functions are safe.
 #pragma once
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "silpose/geometry/camera.h"
+#include "silpose/render/view_volume.h"
 
 namespace silpose {
 
@@ -22,7 +22,7 @@ class SegmentProjector {
 
  private:
   PinholeCamera camera_;
-  std::vector<Eigen::Vector4d> half_spaces_;  // of camera coordinates: inside is n . x + d >= 0
+  ViewVolume view_;
 };
 
 }  // namespace silpose

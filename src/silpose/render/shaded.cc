@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "silpose/base/check.h"
+#include "silpose/render/projected_mesh.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/render/triangle_fill.h"
 
@@ -15,19 +16,19 @@ namespace {
 constexpr int kSamples = 2;  // a pixel, along each axis
 
 // A mesh as a camera sees it on a raster of `scale` samples a pixel.
-struct ProjectedMesh {
-  ProjectedMesh(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world, int scale)
-      : width(camera.width * scale),
-        height(camera.height * scale),
-        pixels(vertices_in_world.size()),
-        points(vertices_in_world.size()),
-        inverse_depth(vertices_in_world.size()) {
-    project_vertices(camera, vertices_in_world, pixels);
+struct SampledMesh {
+  SampledMesh(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
+              std::span<const Face> mesh_faces, int scale)
+      : width(camera.width * scale), height(camera.height * scale), faces(mesh_faces.begin(), mesh_faces.end()) {
+    project_mesh(camera, vertices_in_world, mesh_faces, projected);
+    faces.insert(faces.end(), projected.cut_faces.begin(), projected.cut_faces.end());
     const double s = scale;
-    round_to_grid(pixels, {.scale_x = s, .scale_y = s, .width = width, .height = height}, points);
-    for (size_t i = 0; i < points.size(); ++i) {
-      inverse_depth[i] = 1 / (camera.cam_from_world * vertices_in_world[i].cast<double>()).z();
+    points.resize(projected.pixels.size());
+    round_to_grid(projected.pixels, {.scale_x = s, .scale_y = s, .width = width, .height = height}, points);
+    for (const Eigen::Vector3f& vertex : vertices_in_world) {
+      inverse_depth.push_back(1 / (camera.cam_from_world * vertex.cast<double>()).z());
     }
+    for (const auto& vertex : projected.cut_vertices) inverse_depth.push_back(1 / vertex.depth);
   }
 
   // Calls visit(x, y, inverse depth, perspective-correct weights of the corners) for the samples of a face.
@@ -46,7 +47,8 @@ struct ProjectedMesh {
   }
 
   int width, height;
-  std::vector<Eigen::Vector2f> pixels;
+  std::vector<Face> faces;  // the mesh's, then the cut ones
+  ProjectedMesh projected;
   std::vector<GridPoint> points;
   std::vector<double> inverse_depth;
 };
@@ -77,10 +79,10 @@ void draw_shadow(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
   std::vector<Eigen::Vector3f> on_floor;
   on_floor.reserve(vertices.size());
   for (const Eigen::Vector3f& vertex : vertices) on_floor.emplace_back(vertex - slope * vertex.y());
-  const ProjectedMesh projected(camera, on_floor, kSamples);
-  const Window window{.scale_x = kSamples, .scale_y = kSamples, .width = projected.width, .height = projected.height};
+  const SampledMesh mesh(camera, on_floor, faces, kSamples);
+  const Window window{.scale_x = kSamples, .scale_y = kSamples, .width = mesh.width, .height = mesh.height};
   Mask mask;
-  draw_silhouette_reference(projected.pixels, faces, window, mask);
+  draw_silhouette_reference(mesh.projected.pixels, mesh.faces, window, mask);
   for (int y = 0; y < picture.height(); ++y) {
     const auto row = picture.row(y);
     for (int x = 0; x < picture.width(); ++x) {
@@ -112,8 +114,8 @@ Eigen::Vector3f clothing_of(std::string_view joint) {
 Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
                         std::span<const Face> faces) {
   Image<float> depth(camera.width, camera.height);
-  const ProjectedMesh mesh(camera, vertices_in_world, 1);
-  for (const Face& face : faces) {
+  const SampledMesh mesh(camera, vertices_in_world, faces, 1);
+  for (const Face& face : mesh.faces) {
     mesh.for_each_sample(face, [&](int x, int y, double inverse_depth, const Eigen::Vector3d&) {
       float& nearest = depth.at(x, y);
       const auto distance = static_cast<float>(1 / inverse_depth);
@@ -135,8 +137,8 @@ void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
     draw_shadow(camera, vertices_in_world, faces, lighting, picture);
   }
 
-  const ProjectedMesh mesh(camera, vertices_in_world, kSamples);
-  const auto bounds = pixel_bounds(mesh.pixels);
+  const SampledMesh mesh(camera, vertices_in_world, faces, kSamples);
+  const auto bounds = pixel_bounds(mesh.projected.pixels);
   if (!bounds) return;
   const Eigen::Vector3f to_light = lighting.to_light.normalized().cast<float>();
   const auto ambient = static_cast<float>(lighting.ambient);
@@ -146,10 +148,15 @@ void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
     const float towards = std::max(0.0f, normals[i].dot(to_light));
     shades[i] = 255 * (ambient + (1 - ambient) * towards) * colours[i];
   }
+  for (const auto& [face, weights, depth] : mesh.projected.cut_vertices) {
+    Eigen::Vector3f shade = Eigen::Vector3f::Zero();
+    for (int k = 0; k < 3; ++k) shade += static_cast<float>(weights[k]) * shades[faces[face][static_cast<size_t>(k)]];
+    shades.push_back(shade);
+  }
 
   Image<float> nearness(mesh.width, mesh.height);  // inverse depth; 0 where there is nothing
   Image<float> shade(mesh.width, mesh.height, 3);
-  for (const Face& face : faces) {
+  for (const Face& face : mesh.faces) {
     mesh.for_each_sample(face, [&](int x, int y, double inverse_depth, const Eigen::Vector3d& weights) {
       float& nearest = nearness.at(x, y);
       if (static_cast<float>(inverse_depth) <= nearest) return;

@@ -1,8 +1,9 @@
 // Silhouettes of posed meshes: from vertices in pixels to a Mask. Two ways that agree to the pixel: a plain reference
 // (every triangle filled) and the fast one (winding number of the outline only).
 // A pixel is set when its centre lies in some projected triangle (half-open: centres on a left or top edge are inside).
-// Shared rule for both: vertices are rounded to a grid of 1/256 raster pixel first (raster_grid.h); a triangle with a
-// vertex nearer than PinholeCamera::kNear is left out.
+// Shared rule for both: vertices are rounded to a grid of 1/256 raster pixel first (raster_grid.h). A triangle that
+// crosses the near plane is cut there (projected_mesh.h): drawn are the triangles of `faces` that lie before it, and
+// those of `cut_faces`; one with a vertex that is NaN is left out.
 // Threads: OutlineRenderer's scratch belongs to one thread; the rest are pure functions.
 #pragma once
 
@@ -45,7 +46,7 @@ void project_vertices(const PinholeCamera& camera, std::span<const Eigen::Vector
 
 // The reference: the union of all triangles, each filled by itself.
 void draw_silhouette_reference(std::span<const Eigen::Vector2f> pixels, std::span<const Face> faces,
-                               const Window& window, Mask& mask);
+                               const Window& window, Mask& mask, std::span<const Face> cut_faces = {});
 
 // Smallest image box around the projected vertices that are seen; nothing when there is none.
 std::optional<PixelBounds> pixel_bounds(std::span<const Eigen::Vector2f> pixels);
@@ -58,17 +59,20 @@ class OutlineRenderer {
   OutlineRenderer(OutlineRenderer&&) noexcept;
   ~OutlineRenderer();
 
-  void draw(std::span<const Eigen::Vector2f> pixels, const Window& window, Mask& mask);
+  // Pixels: the topology's vertices, then those that only `cut_faces` name.
+  void draw(std::span<const Eigen::Vector2f> pixels, const Window& window, Mask& mask,
+            std::span<const Face> cut_faces = {});
 
   // Counts of a drawn silhouette against an observed mask of the window's size, without keeping the drawing.
   struct Counts {
     int64_t model = 0;  // pixels of the silhouette
     int64_t both = 0;   // pixels set in both
   };
-  Counts count(std::span<const Eigen::Vector2f> pixels, const Window& window, const Mask& observed);
+  Counts count(std::span<const Eigen::Vector2f> pixels, const Window& window, const Mask& observed,
+               std::span<const Face> cut_faces = {});
 
  private:
-  void scan(std::span<const Eigen::Vector2f> pixels, const Window& window);
+  void scan(std::span<const Eigen::Vector2f> pixels, const Window& window, std::span<const Face> cut_faces);
   struct Scratch;
   std::unique_ptr<Scratch> scratch_;
 };

@@ -11,6 +11,7 @@
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
+#include "silpose/render/projected_mesh.h"
 #include "silpose/render/shaded.h"
 #include "silpose/render/silhouette.h"
 
@@ -28,10 +29,11 @@ constexpr double kLeastShare = 0.01;  // of the mesh's faces: a joint with fewer
 uint64_t stream_of(int camera_idx, uint64_t of_fault) { return 16 * static_cast<uint64_t>(camera_idx + 1) + of_fault; }
 
 Mask draw_faces(const PinholeCamera& camera, std::span<const Vector3f> vertices, std::span<const Face> faces) {
-  std::vector<Eigen::Vector2f> pixels(vertices.size());
-  project_vertices(camera, vertices, pixels);
+  ProjectedMesh mesh;
+  project_mesh(camera, vertices, faces, mesh);
   Mask mask;
-  draw_silhouette_reference(pixels, faces, Window{.width = camera.width, .height = camera.height}, mask);
+  draw_silhouette_reference(mesh.pixels, faces, Window{.width = camera.width, .height = camera.height}, mask,
+                            mesh.cut_faces);
   return mask;
 }
 

@@ -6,6 +6,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/render/projected_mesh.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/shape/normalised_silhouette.h"
 
@@ -54,7 +55,7 @@ StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, con
   parallel_for(static_cast<size_t>(placed.rows()), 1, [&](size_t begin, size_t end) {
     OutlineRenderer outline(topology);
     Mask mask(window.width, window.height);
-    std::vector<Eigen::Vector2f> pixels(body.rest.vertices.size());
+    ProjectedMesh mesh;
     for (size_t k = begin; k < end; ++k) {
       auto row = placed.row(static_cast<Eigen::Index>(k));
       const std::span<double> pose(row.data(), static_cast<size_t>(body.skeleton.num_dofs()));
@@ -66,8 +67,8 @@ StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, con
         const Eigen::Vector3d root =
             camera.cam_from_world.inverse() * Eigen::Vector3d(camera.ray_from_pixel(aim) * depth);
         std::copy_n(root.data(), 3, pose.begin());
-        project_vertices(camera, skin_vertices(body, pose), pixels);
-        outline.draw(pixels, window, mask);
+        project_mesh(camera, skin_vertices(body, pose), body.rest.faces, mesh);
+        outline.draw(mesh.pixels, window, mask, mesh.cut_faces);
         const Blob drawn = measure(mask);
         if (drawn.area < 1) break;
         depth *= std::clamp(std::sqrt(drawn.area / observed.area), 0.5, 2.0);
