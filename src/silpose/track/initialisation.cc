@@ -21,7 +21,7 @@ namespace {
 // All candidates are fitted at these; the best of each heading at the finer ones.
 constexpr FitStage kCoarseStages[] = {{Blur::k32, 3}, {Blur::k16, 4}};
 constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}};
-constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};
+constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};  // the better half goes on to the second
 constexpr FitStage kDistantStages[] = {{Blur::k8, 6}, {Blur::k4, 8}};
 constexpr uint64_t kDistantStream = std::numeric_limits<uint64_t>::max();  // of random numbers, and those below
 constexpr int kDistantRounds = 3;                                          // at most: no progress ends them
@@ -31,7 +31,7 @@ constexpr double kTwoAtOnce = 0.3;  // share of the random limbs that come in pa
 // A round of other limbs that leaves more than this of the cost is stale; as many of them in a row end a search. So
 // does an E, after as many rounds, that is far more than is left elsewhere.
 constexpr double kStaleCost = 0.97, kHopelessRatio = 5, kHopeless = 100;
-constexpr int kStaleRounds = 2, kPatience = 3;
+constexpr int kStaleRounds = 2;
 constexpr double kContradicted = 20;  // by landmarks, more than the best start
 
 // Loosely about a candidate: joints by half their range, the trunk's tilt by 20 degrees; where the body is, and which
@@ -209,7 +209,11 @@ void search_limbs(const Sight& sight, const InitialisationOptions& options, cons
     const double before = starts.front().cost();
     const auto stream = rounds.index * static_cast<uint64_t>(options.num_rounds) + static_cast<uint64_t>(round);
     std::vector<Candidate> variants = promising_variants(sight, starts, options, stream);
-    fit_all(sight, kVariantStages, variants);
+    const std::span stages(kVariantStages);
+    fit_all(sight, stages.first(1), variants);
+    sort_best_first(variants);
+    variants.resize((variants.size() + 1) / 2);
+    fit_all(sight, stages.subspan(1), variants);
     std::ranges::move(variants, std::back_inserter(starts));
     keep();
     stale = starts.front().cost() > kStaleCost * before ? stale + 1 : 0;
@@ -285,14 +289,14 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   }
   // The best of all once more, against each other; then from what looks like them and is far away, while it helps.
   uint64_t index = headings.size();
-  search_limbs(sight, options, {index++, least, kPatience}, starts);
+  search_limbs(sight, options, {index++, least, options.patience}, starts);
   for (int round = 0; round < kDistantRounds && starts.front().fit.energy > kExplained; ++round) {
     const double before = starts.front().cost();
     std::vector<Candidate> distant = distant_variants(sight, starts, options, index);
     if (distant.empty()) break;
     search_limbs(sight, options, {index++, starts.front().fit.energy, kStaleRounds}, distant);
     std::ranges::move(distant, std::back_inserter(starts));
-    search_limbs(sight, options, {index++, starts.front().fit.energy, kPatience}, starts);
+    search_limbs(sight, options, {index++, starts.front().fit.energy, options.patience}, starts);
     if (starts.front().cost() > kStaleCost * before) break;
   }
 

@@ -22,14 +22,15 @@ struct InitialisationOptions {
   int first_heading = 0;      // of the best, round and round
   int num_varied = 4;         // the best of a heading, of which other limbs are tried
   int num_rounds = 8;         // of trying other limbs of a heading, at most: no progress ends them
+  int patience = 3;           // rounds in a row that may bring little, where the best of all headings are searched
   int num_random_limbs = 60;  // tried of each, besides reflections and exchanges
   int num_fitted = 4;         // of those of each, the most promising
   int num_starts = 8;
   double merge_distance = 0.1;  // metres: starts whose every joint is nearer are one
   uint64_t seed = 1;
-  double facing_bonus = 1;    // log-likelihood that facing the camera is worth; as much is lost by facing away
-  // Absent: silhouettes alone decide. Otherwise what the observations' landmarks contradict is worse, as far as its cost
-  // by them (motion/landmark_match.h) is above this, and facing means nothing.
+  double facing_bonus = 1;  // log-likelihood that facing the camera is worth; as much is lost by facing away
+  // Absent: silhouettes alone decide. Otherwise what the observations' landmarks contradict is worse, as far as its
+  // cost by them (motion/landmark_match.h) is above this, and facing means nothing.
   std::optional<double> landmark_allowance;
 };
 
