@@ -9,6 +9,8 @@ namespace silpose::bench {
 // Poses to pixel-count distances, 128x128: the body's full mesh, and its level of detail of 2,000 vertices.
 Figure likelihood_full(int rounds);
 Figure likelihood_lod(int rounds);
+// The full mesh by coverage in place of pixels.
+Figure likelihood_coverage(int rounds);
 // likelihood_full on two threads against one: the median of the rounds' ratios.
 Figure scaling_2_threads(int rounds);
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdlib>
 #include <memory>
 #include <string>
@@ -76,6 +77,39 @@ Figure likelihood_full(int rounds) {
   return likelihood(human(), 1024, rounds);
 }
 Figure likelihood_lod(int rounds) { return likelihood(level_of_detail(human(), 2000), 4096, rounds); }
+
+Figure likelihood_coverage(int rounds) {
+  constexpr size_t kPoses = 1024, kShare = kPoses / 16;
+  const SilhouetteScene scene = standing_scene(human(), kPoses);
+  const BatchRenderer renderer(scene.body, scene.camera);
+  const ByteImage observed = plain_coverage(scene, scene.pose(kPoses));
+  std::vector<OutlineRenderer::Counts> counts(kPoses);
+  const auto ours = [&] { renderer.coverages(scene.batch(kPoses), scene.window, observed, counts); };
+  ours();
+  for (size_t n = 0; n < kShare; ++n) {
+    OutlineRenderer::Counts plain;
+    const ByteImage model = plain_coverage(scene, scene.pose(n));
+    for (size_t i = 0; i < model.pixels().size(); ++i) {
+      plain.model += model.pixels()[i];
+      plain.both += std::min(model.pixels()[i], observed.pixels()[i]);
+    }
+    verify(std::abs(counts[n].model - plain.model) <= kTolerance * kCoverageSamples &&
+               std::abs(counts[n].both - plain.both) <= kTolerance * kCoverageSamples,
+           "coverage of pose " + std::to_string(n));
+  }
+  const Contestant peers[] = {{.name = "plain renderer, every triangle filled",
+                               .amount = kShare,
+                               .run =
+                                   [&] {
+                                     parallel_for(kShare, 8, [&](size_t begin, size_t end) {
+                                       for (size_t n = begin; n < end; ++n) keep(plain_coverage(scene, scene.pose(n)));
+                                     });
+                                   }},
+                              {.name = "pixel count", .amount = kPoses, .run = [&] {
+                                 keep(our_distances(scene, renderer, 0, kPoses, scene.observed));
+                               }}};
+  return measure({.unit = "poses/s", .rounds = rounds}, {.name = "ours", .amount = kPoses, .run = ours}, peers);
+}
 
 Figure scaling_2_threads(int rounds) {
   constexpr size_t kPoses = 2048;

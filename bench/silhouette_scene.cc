@@ -23,6 +23,13 @@ std::vector<double> random_poses(const BodyModel& body, size_t count) {
   return poses;
 }
 
+std::vector<Eigen::Vector2f> pixels_of(const SilhouetteScene& scene, std::span<const double> pose) {
+  const auto vertices = skin_vertices(*scene.body, pose);
+  std::vector<Eigen::Vector2f> pixels(vertices.size());
+  project_vertices(scene.camera, vertices, pixels);
+  return pixels;
+}
+
 }  // namespace
 
 std::shared_ptr<const BodyModel> human() {
@@ -43,12 +50,13 @@ SilhouetteScene standing_scene(std::shared_ptr<const BodyModel> body, size_t num
 }
 
 Mask plain_silhouette(const SilhouetteScene& scene, std::span<const double> pose) {
-  const auto vertices = skin_vertices(*scene.body, pose);
-  std::vector<Eigen::Vector2f> pixels(vertices.size());
-  project_vertices(scene.camera, vertices, pixels);
   Mask mask;
-  draw_silhouette_reference(pixels, scene.body->rest.faces, scene.window, mask);
+  draw_silhouette_reference(pixels_of(scene, pose), scene.body->rest.faces, scene.window, mask);
   return mask;
+}
+
+ByteImage plain_coverage(const SilhouetteScene& scene, std::span<const double> pose) {
+  return draw_coverage_reference(pixels_of(scene, pose), scene.body->rest.faces, scene.window);
 }
 
 std::vector<int64_t> plain_distances(const SilhouetteScene& scene, size_t first, size_t count, const Mask& observed) {

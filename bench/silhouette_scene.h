@@ -10,6 +10,7 @@
 
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
+#include "silpose/image/image.h"
 #include "silpose/image/mask.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/shape/window.h"
@@ -40,6 +41,7 @@ SilhouetteScene standing_scene(std::shared_ptr<const BodyModel> body, size_t num
 
 // The plain renderer's silhouette of a pose [D]: every vertex skinned and projected, every triangle filled by itself.
 Mask plain_silhouette(const SilhouetteScene& scene, std::span<const double> pose);
+ByteImage plain_coverage(const SilhouetteScene& scene, std::span<const double> pose);
 
 // Differing pixels of `count` poses from number `first` on and `observed`, on all cores. [count]
 std::vector<int64_t> plain_distances(const SilhouetteScene& scene, size_t first, size_t count, const Mask& observed);

@@ -52,7 +52,9 @@ void add_sampling_options(CLI::App& app, TrackOptions& options) {
       ->check(within(0, 1));
   add("--regenerate", tracker.regenerate, "Part of the comb's particles that is made anew")->check(within(0, 0.99));
   add("--sharpness", tracker.sharpness, "How strongly better silhouettes are preferred")->check(within(1e-3, 1e6));
-  add("--metric", options.metric, "How silhouettes are compared")->check(CLI::IsMember({"pixel-count"}));
+  add("--metric", tracker.metric,
+      "How silhouettes are compared: pixel-count (pixels that differ) or coverage (how much of each; finer, slower)")
+      ->check(CLI::IsMember({"pixel-count", "coverage"}));
   add("--root", options.root, "tracked, or fixed where it starts")
       ->capture_default_str()
       ->check(CLI::IsMember({"tracked", "fixed"}));
@@ -67,7 +69,7 @@ std::optional<std::string> sampling_option(const TrackOptions& options) {
       {"--motion", tracker.motion.has_value()},         {"--sigma-deg", tracker.sigma_deg.has_value()},
       {"--resampling", tracker.resampling.has_value()}, {"--resample-below", options.resample_below.has_value()},
       {"--regenerate", tracker.regenerate.has_value()}, {"--sharpness", tracker.sharpness.has_value()},
-      {"--metric", options.metric.has_value()},         {"--root fixed", options.root == "fixed"},
+      {"--metric", tracker.metric.has_value()},         {"--root fixed", options.root == "fixed"},
       {"--estimate", options.estimate.has_value()}};
   for (const auto& [name, is_given] : given) {
     if (is_given) return name;
@@ -220,6 +222,7 @@ std::map<std::string, std::string> chosen_options(const TrackOptions& options, c
   keep("resampling", used.resampling);
   keep("resample-below", std::optional(used.resample_below));
   keep("regenerate", used.regenerate);
+  keep("metric", used.metric);
   keep("sharpness", used.sharpness);
   if (used.estimate) {
     chosen["estimate"] = *used.estimate == Estimate::kMean   ? "mean"

@@ -21,7 +21,7 @@ struct TrackOptions {
   InputOptions input;
   CameraOptions camera;
   std::string model = "human", out, config, init = "auto", root = "tracked";
-  std::optional<std::string> metric, estimate;
+  std::optional<std::string> estimate;
   std::optional<double> resample_below, level_iou;
   std::optional<bool> fit_body;
   bool each = false, resume = false, draw_floor = false;

@@ -38,8 +38,9 @@ grep -q -x 'smooth = false' one/config.toml || fail "config.toml does not say th
 grep -q -x 'floor = false' one/config.toml || fail "config.toml does not say that there is no floor"
 "$silpose" track truth/masks --segmenter masks --end 0.04 --out assumed --quiet || fail "an assumed camera: exit $?"
 grep -q -x 'floor = false' assumed/config.toml || fail "an assumed camera has a floor"
-"$silpose" "${track[@]}" --particles 200 --layers 1 --end 0.1 --out plain >plain.json || fail "plain filter: exit $?"
+"$silpose" "${track[@]}" --particles 200 --layers 1 --metric coverage --end 0.1 --out plain >plain.json || fail "plain filter: exit $?"
 grep -q -x 'layers = 1' plain/config.toml || fail "config.toml does not say one layer"
+grep -q -x "metric = 'coverage'" plain/config.toml || fail "config.toml does not say the metric"
 "$silpose" track --config plain/config.toml --out again --quiet || fail "--config of a plain filter: exit $?"
 cmp -s plain/poses.csv again/poses.csv || fail "plain filter: other poses when the options come from config.toml"
 

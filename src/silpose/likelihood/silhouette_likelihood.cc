@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "silpose/base/check.h"
 #include "silpose/shape/normalised_silhouette.h"
@@ -9,10 +10,14 @@
 namespace silpose {
 namespace {
 
-// Differing pixels over the sum of both areas. A body that is not seen at all shares nothing with what was observed.
+// What differs over the sum of both areas. A body that is not seen at all shares nothing with what was observed.
 double area_distance(const OutlineRenderer::Counts& counts, int64_t observed_area) {
   const int64_t sum = counts.model + observed_area;
   return sum == 0 ? 1.0 : static_cast<double>(sum - 2 * counts.both) / static_cast<double>(sum);
+}
+
+int64_t sum_of(const ByteImage& covered) {
+  return std::accumulate(covered.pixels().begin(), covered.pixels().end(), int64_t{0});
 }
 
 }  // namespace
@@ -45,14 +50,19 @@ Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations
     Evidence::View view;
     if (!observation.trust.nothing_found && !observation.box.empty()) {
       if (options_.comparison == Comparison::kCropped) {
-        view.observed = normalised_silhouette(observation.mask, options_.resolution, options_.resolution);
+        view.window = window_of(observation.mask.bounding_box(), options_.resolution, options_.resolution);
       } else {
         // Never enlarged: there is nothing to see between the pixels of a small subject.
         const double longer_side = std::max({observation.box.width, observation.box.height, 1});
         view.window = window_of_image(camera.width, camera.height, std::min(1.0, options_.resolution / longer_side));
-        view.observed = resample_mask(observation.mask, view.window);
       }
-      view.area = view.observed.count();
+      if (options_.metric == Metric::kCoverage) {
+        view.covered = resample_coverage(observation.mask, view.window, kFullCoverage);
+        view.area = sum_of(view.covered);
+      } else {
+        view.observed = resample_mask(observation.mask, view.window);
+        view.area = view.observed.count();
+      }
       view.trust = view.area > 0 ? observation.trust.overall : 0;
     }
     evidence.views.push_back(std::move(view));
@@ -75,10 +85,17 @@ void SilhouetteLikelihood::accumulate(const Evidence& evidence, const StateBatch
   for (size_t c = 0; c < renderers_.size(); ++c) {
     const Evidence::View& view = evidence.views[c];
     if (view.trust <= 0) continue;
-    if (options_.comparison == Comparison::kCropped) {
-      renderers_[c]->counts_cropped(batch, view.observed, counts);
+    const BatchRenderer& renderer = *renderers_[c];
+    if (options_.metric == Metric::kCoverage) {
+      if (options_.comparison == Comparison::kCropped) {
+        renderer.coverages_cropped(batch, view.covered, counts);
+      } else {
+        renderer.coverages(batch, view.window, view.covered, counts);
+      }
+    } else if (options_.comparison == Comparison::kCropped) {
+      renderer.counts_cropped(batch, view.observed, counts);
     } else {
-      renderers_[c]->counts(batch, view.window, view.observed, counts);
+      renderer.counts(batch, view.window, view.observed, counts);
     }
     for (size_t n = 0; n < num_states; ++n) {
       out[n] += (weighted ? view.trust : 1.0) * area_distance(counts[n], view.area);
@@ -86,10 +103,10 @@ void SilhouetteLikelihood::accumulate(const Evidence& evidence, const StateBatch
   }
 }
 
-void SilhouetteLikelihood::distances(const Evidence& evidence, const StateBatch& states,
-                                     std::span<double> out) const {
+void SilhouetteLikelihood::distances(const Evidence& evidence, const StateBatch& states, std::span<double> out) const {
   accumulate(evidence, states, false, out);
-  const auto seen = std::count_if(evidence.views.begin(), evidence.views.end(), [](const auto& v) { return v.trust > 0; });
+  const auto seen =
+      std::count_if(evidence.views.begin(), evidence.views.end(), [](const auto& v) { return v.trust > 0; });
   for (double& distance : out) distance = seen > 0 ? distance / static_cast<double>(seen) : 0;
 }
 

@@ -20,8 +20,15 @@ enum class Comparison {
   kCropped,  // both cropped to their boxes and scaled to a common size, as the thesis does: only the shape counts
 };
 
+// What differs.
+enum class Metric {
+  kPixelCount,  // pixels: set in one of both only
+  kCoverage,    // parts of pixels: |covered by one - covered by the other|, which motion of a tenth of a pixel changes
+};
+
 struct LikelihoodOptions {
   Comparison comparison = Comparison::kImage;
+  Metric metric = Metric::kPixelCount;
   double sharpness = 40;  // log-likelihood of a silhouette that shares no pixel with the observed one is -sharpness
   int resolution = 128;   // raster pixels along the longer side of the observed silhouette
   // Errors: throws std::invalid_argument.
@@ -31,9 +38,10 @@ struct LikelihoodOptions {
 // The observations of one instant in the form that comparisons need.
 struct Evidence {
   struct View {
-    Window window;      // of the raster below, in image pixels
-    Mask observed;      // raster
-    int64_t area = 0;   // its set pixels
+    Window window;      // of the rasters below, in image pixels
+    Mask observed;      // raster; for Metric::kPixelCount
+    ByteImage covered;  // raster, 0 to kFullCoverage; for Metric::kCoverage
+    int64_t area = 0;   // set pixels, or the sum of what is covered
     double trust = 0;   // 0: this camera has no say
   };
   std::vector<View> views;  // [C]
@@ -47,8 +55,8 @@ class SilhouetteLikelihood {
   // Shapes: one observation a camera. A camera whose observation found nothing gets no say.
   [[nodiscard]] Evidence prepare(std::span<const Observation> observations) const;
 
-  // Distance in [0, 1] of each state, mean over the cameras that have a say: differing pixels over the sum of both
-  // areas (0: equal, 1: disjoint). Shapes: states [N, D' >= D], only the first D columns are read; out [N].
+  // Distance in [0, 1] of each state, mean over the cameras that have a say: what differs over the sum of both areas
+  // (0: equal, 1: disjoint). Shapes: states [N, D' >= D], only the first D columns are read; out [N].
   void distances(const Evidence& evidence, const StateBatch& states, std::span<double> out) const;
 
   // -sharpness * trust * distance, summed over cameras. Shapes: as distances().

@@ -104,6 +104,59 @@ TEST_F(SilhouetteLikelihoodTest, TrustScalesTheSay) {
   EXPECT_DOUBLE_EQ(half[0], full[0] / 2);
 }
 
+TEST_F(SilhouetteLikelihoodTest, WholePixelsHaveTheSameDistanceByEitherMetric) {
+  // At the picture's own resolution nothing observed is covered in part: what differs of whole pixels is the same.
+  const auto count = make(), coverage = make({.metric = Metric::kCoverage, .resolution = 1024});
+  Observation far = observe(pose_);
+  auto disjoint = pose_;
+  disjoint[0] += 1.5;
+  std::vector<double> by_count(2), by_coverage(2);
+  count.distances(count.prepare({&far, 1}), batch({disjoint, pose_}), by_count);
+  coverage.distances(coverage.prepare({&far, 1}), batch({disjoint, pose_}), by_coverage);
+  EXPECT_EQ(by_count[0], 1);
+  EXPECT_EQ(by_coverage[0], 1);
+  EXPECT_LT(by_coverage[1], 0.05);  // outlines cut pixels that were observed whole or not at all
+}
+
+TEST_F(SilhouetteLikelihoodTest, ATenthOfAPixelMovesTheCoverage) {
+  camera_.width = 640, camera_.height = 480, camera_.fx = camera_.fy = 600, camera_.cx = 320, camera_.cy = 240;
+  pose_ = {0.1, 0.5, 0, 0, 0, 0.02, 0, 0};  // limbs nearly upright: their outlines pass centres of pixels in one go
+  const Observation observation = observe(pose_);
+  constexpr int kResolution = 24;
+  const double metres_per_raster_pixel =
+      std::max(observation.box.width, observation.box.height) / double(kResolution) * 4 / camera_.fx;
+  std::vector<std::vector<double>> poses;
+  for (int k = 0; k <= 10; ++k) {
+    poses.push_back(pose_);
+    poses.back()[0] += 0.1 * k * metres_per_raster_pixel;
+  }
+  std::vector<double> by_coverage(poses.size()), by_count(poses.size());
+  const auto coverage = make({.metric = Metric::kCoverage, .resolution = kResolution});
+  const auto count = make({.resolution = kResolution});
+  coverage.distances(coverage.prepare({&observation, 1}), batch(poses), by_coverage);
+  count.distances(count.prepare({&observation, 1}), batch(poses), by_count);
+  int unmoved = 0;
+  for (size_t k = 1; k < poses.size(); ++k) {
+    EXPECT_GT(by_coverage[k], by_coverage[k - 1] + 0.003) << k;
+    unmoved += by_count[k] <= by_count[k - 1];
+  }
+  EXPECT_GE(unmoved, 4);
+  EXPECT_LT(by_coverage[0], 0.01);
+}
+
+TEST_F(SilhouetteLikelihoodTest, CroppedCoverageForgetsPosition) {
+  const auto likelihood = make({.comparison = Comparison::kCropped, .metric = Metric::kCoverage, .resolution = 64});
+  const Observation observation = observe(pose_);
+  auto moved = pose_, bent = pose_;
+  moved[0] += 0.1;
+  bent[5] -= 0.6;
+  std::vector<double> distances(3);
+  likelihood.distances(likelihood.prepare({&observation, 1}), batch({pose_, moved, bent}), distances);
+  EXPECT_LT(distances[0], 0.03);
+  EXPECT_LT(distances[1], 0.06);
+  EXPECT_GT(distances[2], 0.15);
+}
+
 TEST_F(SilhouetteLikelihoodTest, TheDerivativePointsBackToTheTruth) {
   const auto likelihood = make();
   const Observation observation = observe(pose_);

@@ -5,6 +5,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/render/coverage_count.h"
 #include "silpose/render/outline_scan.h"
 #include "silpose/render/projected_mesh.h"
 #include "silpose/render/projected_skin.h"
@@ -55,10 +56,10 @@ struct BatchRenderer::Impl {
       : body(std::move(the_body)), camera(std::move(the_camera)), skin(*body, camera), topology(skin.faces()) {}
 
   // project(pose, scratch) leaves a pose's points on the grid of the window that it returns, or nothing when it is not
-  // seen.
-  template <class Project>
-  void counts(const BatchView& poses, const Mask& observed, std::span<OutlineRenderer::Counts> out,
-              const Project& project) const {
+  // seen; count(outline) tells what is wanted of the outline scanned there.
+  template <class Project, class Count>
+  void counts(const BatchView& poses, std::span<OutlineRenderer::Counts> out, const Project& project,
+              const Count& count) const {
     check(out.size() == poses.num_poses, "BatchRenderer: {} poses, room for {}", poses.num_poses, out.size());
     check(poses.num_dofs == static_cast<size_t>(body->skeleton.num_dofs()), "BatchRenderer: poses of {} DOF for {}",
           poses.num_dofs, body->skeleton.num_dofs());
@@ -70,7 +71,7 @@ struct BatchRenderer::Impl {
         const std::span pose(poses.data + n * poses.stride, poses.num_dofs);
         if (const std::optional<Window> window = project(pose, *scratch)) {
           scan(*window, *scratch);
-          out[n] = scratch->outline.count(observed);
+          out[n] = count(scratch->outline);
         }
       }
       pool.give_back(std::move(scratch));
@@ -103,13 +104,25 @@ struct BatchRenderer::Impl {
     round_to_grid(scratch.cut.pixels, window, scratch.projected.points);
   }
 
-  bool project_to_grid(std::span<const double> pose, const Window& window, PoseScratch& scratch) const {
-    if (!skin.project_to_grid(pose, window, scratch.projected)) return false;
+  std::optional<Window> project_to(const Window& window, std::span<const double> pose, PoseScratch& scratch) const {
+    if (!skin.project_to_grid(pose, window, scratch.projected)) return std::nullopt;
     if (scratch.projected.some_unseen) {
       cut(pose, scratch);
       round(window, scratch);
     }
-    return true;
+    return window;
+  }
+
+  // To the window of the part inside the picture, of samples where `finer`.
+  std::optional<Window> project_cropped(int width, int height, bool finer, std::span<const double> pose,
+                                        PoseScratch& scratch) const {
+    if (!project(pose, scratch)) return std::nullopt;
+    const auto bounds = bounds_in_picture(scratch);
+    if (!bounds) return std::nullopt;
+    const Window cropped = window_of(*bounds, width, height);
+    const Window window = finer ? sample_window(cropped) : cropped;
+    round(window, scratch);
+    return window;
   }
 
   static void scan(const Window& window, PoseScratch& scratch) {
@@ -145,22 +158,38 @@ void BatchRenderer::counts(const BatchView& poses, const Window& window, const M
   check(observed.width() == window.width && observed.height() == window.height,
         "BatchRenderer: mask of {}x{} for a window of {}x{}", observed.width(), observed.height(), window.width,
         window.height);
-  impl_->counts(poses, observed, out, [&](auto pose, auto& scratch) -> std::optional<Window> {
-    if (!impl_->project_to_grid(pose, window, scratch)) return std::nullopt;
-    return window;
-  });
+  impl_->counts(
+      poses, out, [&](auto pose, auto& scratch) { return impl_->project_to(window, pose, scratch); },
+      [&](const OutlineScan& outline) { return outline.count(observed); });
+}
+
+void BatchRenderer::coverages(const BatchView& poses, const Window& window, const ByteImage& observed,
+                              std::span<OutlineRenderer::Counts> out) const {
+  check(observed.width() == window.width && observed.height() == window.height,
+        "BatchRenderer: coverage of {}x{} for a window of {}x{}", observed.width(), observed.height(), window.width,
+        window.height);
+  const CoverageColumns columns(observed);
+  const Window samples = sample_window(window);
+  impl_->counts(
+      poses, out, [&](auto pose, auto& scratch) { return impl_->project_to(samples, pose, scratch); },
+      [&](const OutlineScan& outline) { return columns.count(outline.bits()); });
 }
 
 void BatchRenderer::counts_cropped(const BatchView& poses, const Mask& observed_cropped,
                                    std::span<OutlineRenderer::Counts> out) const {
-  impl_->counts(poses, observed_cropped, out, [&](auto pose, auto& scratch) -> std::optional<Window> {
-    if (!impl_->project(pose, scratch)) return std::nullopt;
-    const auto bounds = impl_->bounds_in_picture(scratch);
-    if (!bounds) return std::nullopt;
-    const Window window = window_of(*bounds, observed_cropped.width(), observed_cropped.height());
-    impl_->round(window, scratch);
-    return window;
-  });
+  const int width = observed_cropped.width(), height = observed_cropped.height();
+  impl_->counts(
+      poses, out, [&](auto pose, auto& scratch) { return impl_->project_cropped(width, height, false, pose, scratch); },
+      [&](const OutlineScan& outline) { return outline.count(observed_cropped); });
+}
+
+void BatchRenderer::coverages_cropped(const BatchView& poses, const ByteImage& observed_cropped,
+                                      std::span<OutlineRenderer::Counts> out) const {
+  const int width = observed_cropped.width(), height = observed_cropped.height();
+  const CoverageColumns columns(observed_cropped);
+  impl_->counts(
+      poses, out, [&](auto pose, auto& scratch) { return impl_->project_cropped(width, height, true, pose, scratch); },
+      [&](const OutlineScan& outline) { return columns.count(outline.bits()); });
 }
 
 const BodyModel& BatchRenderer::body() const { return *impl_->body; }

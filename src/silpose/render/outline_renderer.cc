@@ -1,4 +1,5 @@
 #include "silpose/base/check.h"
+#include "silpose/render/coverage_count.h"
 #include "silpose/render/outline_scan.h"
 #include "silpose/render/silhouette.h"
 
@@ -39,6 +40,13 @@ OutlineRenderer::Counts OutlineRenderer::count(std::span<const Eigen::Vector2f> 
         window.height);
   scan(pixels, window, cut_faces);
   return scratch_->outline.count(observed);
+}
+
+OutlineRenderer::Counts OutlineRenderer::count_coverage(std::span<const Eigen::Vector2f> pixels, const Window& window,
+                                                        const ByteImage& observed, std::span<const Face> cut_faces) {
+  const CoverageColumns columns(observed);
+  scan(pixels, sample_window(window), cut_faces);
+  return columns.count(scratch_->outline.bits());
 }
 
 }  // namespace silpose

@@ -24,12 +24,6 @@ struct ChangeRaster {
   int row_begin, row_end, column_begin, column_end;
 };
 
-// The part of a raster of bits [words, height] that is in use.
-struct BitPart {
-  int height;
-  int row_begin, row_end, word_begin, word_end;
-};
-
 // Edges that have columns left to cross, as structure of arrays with room for one vector more.
 struct ActiveEdges {
   int32_t *column, *column_end;
@@ -170,11 +164,11 @@ void sum_columns(int8_t* HWY_RESTRICT changes, size_t num_rows, uint64_t* HWY_RE
 #endif
 }
 
-void count_bits(const uint64_t* HWY_RESTRICT inside, const BitPart& part, const uint64_t* HWY_RESTRICT observed,
-                size_t words_per_row, int64_t* model, int64_t* both) {
+void count_bits(const OutlineScan::Bits& part, const uint64_t* HWY_RESTRICT observed, size_t words_per_row,
+                int64_t* model, int64_t* both) {
   size_t all = 0, common = 0;
   for (int w = part.word_begin; w < part.word_end; ++w) {
-    const uint64_t* const column = inside + static_cast<size_t>(w) * static_cast<size_t>(part.height);
+    const uint64_t* const column = part.words + static_cast<size_t>(w) * static_cast<size_t>(part.height);
     for (auto y = static_cast<size_t>(part.row_begin); y < static_cast<size_t>(part.row_end); ++y) {
       const uint64_t word = column[y];
       all += hwy::PopCount(word);
@@ -264,10 +258,8 @@ void OutlineScan::draw(Mask& mask) const {
 
 OutlineRenderer::Counts OutlineScan::count(const Mask& observed) const {
   OutlineRenderer::Counts counts;
-  const BitPart part{height_, row_begin_, row_end_, word_begin_, word_end_};
   HWY_DYNAMIC_DISPATCH(count_bits)
-  (inside_.data(), part, observed.words().data(), static_cast<size_t>(observed.words_per_row()), &counts.model,
-   &counts.both);
+  (bits(), observed.words().data(), static_cast<size_t>(observed.words_per_row()), &counts.model, &counts.both);
   return counts;
 }
 

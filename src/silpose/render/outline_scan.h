@@ -32,6 +32,17 @@ class OutlineScan {
   [[nodiscard]] OutlineRenderer::Counts count(const Mask& observed) const;
   [[nodiscard]] std::optional<PixelBounds> bounds() const;
 
+  // The scanned silhouette itself: 64 pixels of a row a word, word columns of all rows one after the other. Words
+  // outside of the rows and columns named mean nothing. Valid until the next scan.
+  struct Bits {
+    const uint64_t* words;  // [ceil(width / 64), height]
+    int width, height;
+    int row_begin, row_end, word_begin, word_end;
+  };
+  [[nodiscard]] Bits bits() const {
+    return {inside_.data(), width_, height_, row_begin_, row_end_, word_begin_, word_end_};
+  }
+
  private:
   void resize(int width, int height);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "silpose/base/check.h"
+#include "silpose/render/coverage_count.h"
 #include "silpose/render/projected_mesh.h"
 #include "silpose/render/raster_grid.h"
 #include "silpose/render/silhouette.h"
@@ -23,6 +24,20 @@ void draw_silhouette_reference(std::span<const Eigen::Vector2f> pixels, std::spa
   };
   std::ranges::for_each(faces, fill);
   std::ranges::for_each(cut_faces, fill);
+}
+
+ByteImage draw_coverage_reference(std::span<const Eigen::Vector2f> pixels, std::span<const Face> faces,
+                                  const Window& window, std::span<const Face> cut_faces) {
+  Mask samples;
+  draw_silhouette_reference(pixels, faces, sample_window(window), samples, cut_faces);
+  ByteImage coverage(window.width, window.height);
+  for (int y = 0; y < samples.height(); ++y) {
+    for (int x = 0; x < samples.width(); ++x) {
+      uint8_t& of_pixel = coverage.at(x / kCoverageSamples, y / kCoverageSamples);
+      of_pixel = static_cast<uint8_t>(of_pixel + samples.get(x, y));
+    }
+  }
+  return coverage;
 }
 
 Mask render_silhouette(const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {

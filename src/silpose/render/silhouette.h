@@ -18,6 +18,7 @@
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/geometry/mesh.h"
+#include "silpose/image/image.h"
 #include "silpose/image/mask.h"
 #include "silpose/render/strip_order.h"
 #include "silpose/shape/window.h"
@@ -48,6 +49,11 @@ void project_vertices(const PinholeCamera& camera, std::span<const Eigen::Vector
 void draw_silhouette_reference(std::span<const Eigen::Vector2f> pixels, std::span<const Face> faces,
                                const Window& window, Mask& mask, std::span<const Face> cut_faces = {});
 
+// How much of each pixel the silhouette covers, 0 to kFullCoverage: the reference drawn kCoverageSamples times finer.
+inline constexpr int kCoverageSamples = 8, kFullCoverage = kCoverageSamples * kCoverageSamples;
+[[nodiscard]] ByteImage draw_coverage_reference(std::span<const Eigen::Vector2f> pixels, std::span<const Face> faces,
+                                                const Window& window, std::span<const Face> cut_faces = {});
+
 // Smallest image box around the projected vertices that are seen; nothing when there is none.
 std::optional<PixelBounds> pixel_bounds(std::span<const Eigen::Vector2f> pixels);
 
@@ -70,6 +76,10 @@ class OutlineRenderer {
   };
   Counts count(std::span<const Eigen::Vector2f> pixels, const Window& window, const Mask& observed,
                std::span<const Face> cut_faces = {});
+  // The same of coverages, in samples: the sum of the model's, and of the lesser of both pixel by pixel. `observed`: up
+  // to kFullCoverage, of the window's size.
+  Counts count_coverage(std::span<const Eigen::Vector2f> pixels, const Window& window, const ByteImage& observed,
+                        std::span<const Face> cut_faces = {});
 
  private:
   void scan(std::span<const Eigen::Vector2f> pixels, const Window& window, std::span<const Face> cut_faces);
@@ -89,10 +99,15 @@ class BatchRenderer {
   // Poses with a number that is not finite count {0, 0}. REQUIRES: equal sizes of window, mask and `out`; num_dofs = D.
   void counts(const BatchView& poses, const Window& window, const Mask& observed,
               std::span<OutlineRenderer::Counts> out) const;
+  // The same of coverages, as OutlineRenderer::count_coverage().
+  void coverages(const BatchView& poses, const Window& window, const ByteImage& observed,
+                 std::span<OutlineRenderer::Counts> out) const;
   // Each silhouette cropped to the bounding box of its part inside the picture and scaled to the observed mask's size
   // (see shape/normalised_silhouette.h), then compared. An unseen body counts {0, 0}.
   void counts_cropped(const BatchView& poses, const Mask& observed_cropped,
                       std::span<OutlineRenderer::Counts> out) const;
+  void coverages_cropped(const BatchView& poses, const ByteImage& observed_cropped,
+                         std::span<OutlineRenderer::Counts> out) const;
   [[nodiscard]] const BodyModel& body() const;
   [[nodiscard]] const PinholeCamera& camera() const;
 

@@ -71,16 +71,21 @@ Window window_of_image(int image_width, int image_height, double scale) {
           .height = static_cast<int>(std::ceil(image_height * scale))};
 }
 
-Mask resample_mask(const Mask& mask, const Window& window) {
+namespace {
+
+void check_window(const Window& window) {
   check(window.width > 0 && window.height > 0 && window.scale_x > 0 && window.scale_y > 0,
-        "resample_mask: window of {}x{} at scale {}, {}", window.width, window.height, window.scale_x, window.scale_y);
-  Mask result(window.width, window.height);
+        "resample: window of {}x{} at scale {}, {}", window.width, window.height, window.scale_x, window.scale_y);
+}
+
+// Calls visit(row, coverage [window.width]) for every row of a window that `mask` may cover, each pixel's covered part
+// in square pixels of the mask.
+template <class Visit>
+void for_each_covered_row(const Mask& mask, const Window& window, Visit&& visit) {
   const Box box = mask.bounding_box();
-  if (box.empty()) return result;
+  if (box.empty()) return;
   const auto columns = covered_intervals(window.x0, window.scale_x, window.width, mask.width());
   const auto rows = covered_intervals(window.y0, window.scale_y, window.height, mask.height());
-  // A hair below one half, so that rounding cannot unset what is covered exactly by half.
-  const double enough = (0.5 - 1e-9) / (window.scale_x * window.scale_y);
   std::vector<double> coverage(static_cast<size_t>(window.width));
   std::vector<double> before(static_cast<size_t>(mask.width()) + 1);
   for (int j = 0; j < window.height; ++j) {
@@ -91,9 +96,33 @@ Mask resample_mask(const Mask& mask, const Window& window) {
       const double weight = std::min(end, y + 1.0) - std::max(begin, static_cast<double>(y));
       if (weight > 0) add_row_coverage(mask.row(y), mask.width(), columns, weight, before, coverage);
     }
-    const auto words = result.row(j);
-    for (size_t i = 0; i < coverage.size(); ++i) words[i >> 6] |= uint64_t{coverage[i] >= enough} << (i & 63);
+    visit(j, coverage);
   }
+}
+
+}  // namespace
+
+Mask resample_mask(const Mask& mask, const Window& window) {
+  check_window(window);
+  Mask result(window.width, window.height);
+  // A hair below one half, so that rounding cannot unset what is covered exactly by half.
+  const double enough = (0.5 - 1e-9) / (window.scale_x * window.scale_y);
+  for_each_covered_row(mask, window, [&](int y, const std::vector<double>& coverage) {
+    const auto words = result.row(y);
+    for (size_t i = 0; i < coverage.size(); ++i) words[i >> 6] |= uint64_t{coverage[i] >= enough} << (i & 63);
+  });
+  return result;
+}
+
+ByteImage resample_coverage(const Mask& mask, const Window& window, int whole) {
+  check(whole >= 1 && whole <= 255, "resample_coverage: {} for a whole pixel", whole);
+  check_window(window);
+  ByteImage result(window.width, window.height);
+  const double per_area = whole * window.scale_x * window.scale_y;
+  for_each_covered_row(mask, window, [&](int y, const std::vector<double>& coverage) {
+    const auto row = result.row(y);
+    for (size_t i = 0; i < coverage.size(); ++i) row[i] = static_cast<uint8_t>(std::lround(coverage[i] * per_area));
+  });
   return result;
 }
 

@@ -5,6 +5,7 @@
 // Threads: pure functions.
 #pragma once
 
+#include "silpose/image/image.h"
 #include "silpose/image/mask.h"
 #include "silpose/shape/window.h"
 
@@ -21,6 +22,9 @@ namespace silpose {
 // What `mask` shows in a window: a raster pixel is set when set pixels cover at least half of it. Outside the mask
 // nothing is set. A window onto every pixel at scale 1 gives the mask itself.
 [[nodiscard]] Mask resample_mask(const Mask& mask, const Window& window);
+
+// How much of each raster pixel set pixels cover: 0, to `whole` where they cover all of it. REQUIRES: whole <= 255.
+[[nodiscard]] ByteImage resample_coverage(const Mask& mask, const Window& window, int whole);
 
 // The mask cropped to its bounding box, on width x height pixels; an empty mask gives an empty one.
 [[nodiscard]] Mask normalised_silhouette(const Mask& mask, int width, int height);

@@ -32,6 +32,24 @@ TEST(ResampleMask, HalfCoveredPixelsAreSet) {
   EXPECT_EQ(text_from_mask(resample_mask(mask, window_of_image(6, 4, 0.5))), "###\n...\n");
 }
 
+TEST(ResampleCoverage, TellsHowMuchOfEachPixelIsSet) {
+  const Mask mask = mask_from_text(R"(
+    ####.#
+    ##...#
+    #.....
+    .....#)");
+  const ByteImage half = resample_coverage(mask, window_of_image(6, 4, 0.5), 64);
+  ASSERT_EQ(half.width(), 3);
+  const int expected[2][3] = {{64, 32, 32}, {16, 0, 16}};
+  for (int y = 0; y < 2; ++y) {
+    for (int x = 0; x < 3; ++x) EXPECT_EQ(half.at(x, y), expected[y][x]) << x << ", " << y;
+  }
+  const Window shifted{.x0 = -0.25, .y0 = 0, .scale_x = 1, .scale_y = 1, .width = 2, .height = 1};
+  EXPECT_EQ(resample_coverage(mask, shifted, 64).at(0, 0), 48);
+  EXPECT_EQ(resample_coverage(mask, shifted, 64).at(1, 0), 64);
+  EXPECT_THROW((void)resample_coverage(mask, shifted, 256), std::invalid_argument);
+}
+
 TEST(ResampleMask, EnlargesByRepeatingPixels) {
   const Mask mask = mask_from_text("#.\n.#");
   EXPECT_EQ(text_from_mask(resample_mask(mask, window_of_image(2, 2, 2))), "##..\n##..\n..##\n..##\n");

@@ -55,11 +55,23 @@ PoseSpread spread_of(const BodyModel& body, const ParticleSet& particles) {
           landmark_spread(body, particles)};
 }
 
+LikelihoodOptions likelihood_options(const TrackerOptions& options) {
+  return {.metric = *options.metric == "coverage" ? Metric::kCoverage : Metric::kPixelCount,
+          .sharpness = *options.sharpness};
+}
+
+LikelihoodOptions cropped_options(const TrackerOptions& options) {
+  LikelihoodOptions cropped = likelihood_options(options);
+  cropped.comparison = Comparison::kCropped;
+  cropped.resolution = kCroppedSize;
+  return cropped;
+}
+
 // Root and pose in one state, compared on the whole image.
 class JointFilter final : public PoseFilter {
  public:
   JointFilter(const TrackerOptions& options, Renderers renderers)
-      : likelihood_(std::move(renderers), {.sharpness = *options.sharpness}),
+      : likelihood_(std::move(renderers), likelihood_options(options)),
         filter_(
             options, likelihood_,
             dofs_where(options.body->skeleton, [&](const Dof& dof) { return !options.root_fixed || !is_root(dof); }),
@@ -96,9 +108,8 @@ class TwoFilters final : public PoseFilter {
   TwoFilters(const TrackerOptions& options, const Renderers& renderers)
       : skeleton_(options.body->skeleton),
         root_fixed_(options.root_fixed),
-        cropped_(renderers,
-                 {.comparison = Comparison::kCropped, .sharpness = *options.sharpness, .resolution = kCroppedSize}),
-        whole_(renderers, {.sharpness = *options.sharpness}),
+        cropped_(renderers, cropped_options(options)),
+        whole_(renderers, likelihood_options(options)),
         pose_filter_(options, cropped_,
                      dofs_where(skeleton_,
                                 [&](const Dof& dof) {

@@ -22,7 +22,7 @@ struct TrackerOptions {
   // How far the subject's size may be from the body's, one standard deviation, relative. One camera cannot tell size
   // from distance, so it goes into the spread; several can.
   double size_deviation = 0;
-  std::string preset = "default";         // "default", "accurate" or "thesis"; fills what is left unset below
+  std::string preset = "default";  // "default", "accurate" or "thesis"; fills what is left unset below
   // The fitted mixture; unset where a sampling filter is asked for.
   std::optional<int> num_hypotheses;
   std::optional<bool> smooth;  // a batch fit over the clip afterwards; only track_clip() does it
@@ -35,6 +35,7 @@ struct TrackerOptions {
   std::optional<std::string> resampling;  // filter/resampling.h
   double resample_below = 1;              // of n_eff / N; 1: every step
   std::optional<double> regenerate;       // fraction of the comb
+  std::optional<std::string> metric;      // "pixel-count" or "coverage" (likelihood/silhouette_likelihood.h)
   std::optional<double> sharpness;
   std::optional<Estimate> estimate;
   bool root_fixed = false;          // the six root DOF stay where they started

@@ -25,6 +25,7 @@ class TubeProposal : public Proposal {
 struct Variant {
   std::string name, preset = "default";
   int particles = 200, layers = 1;  // none: fitted hypotheses
+  std::optional<std::string> metric = {};
 };
 
 class TrackerTest : public ::testing::TestWithParam<Variant> {
@@ -37,6 +38,7 @@ class TrackerTest : public ::testing::TestWithParam<Variant> {
     if (GetParam().layers > 0) {
       options.num_particles = GetParam().particles;
       options.num_layers = GetParam().layers;
+      options.metric = GetParam().metric;
     }
     options.proposal = std::make_shared<TubeProposal>();
     return options;
@@ -189,8 +191,9 @@ TEST_P(SamplingTrackerTest, AnotherSeedGivesAnotherResult) {
   EXPECT_NE(poses[0], poses[1]);
 }
 
-const auto kSampling = ::testing::Values(Variant{.name = "annealed", .particles = 60, .layers = 8},
-                                         Variant{.name = "plain"}, Variant{.name = "thesis", .preset = "thesis"});
+const auto kSampling =
+    ::testing::Values(Variant{.name = "annealed", .particles = 60, .layers = 8}, Variant{.name = "plain"},
+                      Variant{.name = "thesis", .preset = "thesis"}, Variant{.name = "coverage", .metric = "coverage"});
 const auto kName = [](const auto& variant) { return variant.param.name; };
 INSTANTIATE_TEST_SUITE_P(Sampling, TrackerTest, kSampling, kName);
 INSTANTIATE_TEST_SUITE_P(Fitted, TrackerTest,
@@ -225,6 +228,8 @@ TEST(TrackerOptions, AreChecked) {
   EXPECT_THROW(make([](auto& o) { o.initial_pose = {1, 2, 3}; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.motion = "teleport"; }), std::invalid_argument);
   EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.resampling = "best"; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.num_layers = 2, o.metric = "beauty"; }), std::invalid_argument);
+  EXPECT_THROW(make([](auto& o) { o.metric = "coverage"; }), std::invalid_argument);
 }
 
 // Where it expects the body is nearer to where it is then than where it was.
