@@ -11,6 +11,8 @@ Figure likelihood_full(int rounds);
 Figure likelihood_lod(int rounds);
 // The full mesh by coverage in place of pixels.
 Figure likelihood_coverage(int rounds);
+// Depth images of the full mesh, 128x128, to their distances from an observed one.
+Figure depth_full(int rounds);
 // likelihood_full on two threads against one: the median of the rounds' ratios.
 Figure scaling_2_threads(int rounds);
 

@@ -30,6 +30,7 @@ constexpr std::array kEntries = {
     Entry{"likelihood_full", silpose::bench::likelihood_full},
     Entry{"likelihood_lod", silpose::bench::likelihood_lod},
     Entry{"likelihood_coverage", silpose::bench::likelihood_coverage},
+    Entry{"depth_full", silpose::bench::depth_full},
     Entry{"scaling_2_threads", silpose::bench::scaling_2_threads},
     Entry{"xor_128_us", silpose::bench::xor_128_us},
     Entry{"xor_256_us", silpose::bench::xor_256_us},

@@ -66,6 +66,26 @@ TEST_F(BatchRendererTest, CountsFromATiltedCameraThatSeesOnlyAPart) {
   expect_counts_of_reference();
 }
 
+TEST_F(BatchRendererTest, CountsInWindowsOf1024) {
+  for (const double angle : {0.4, 2.0}) {
+    camera_ = look_at_camera(640, 480, 600, {3 * std::sin(angle), 1.2, 3 * std::cos(angle)}, {0, 0.6, 0});
+    const Window window{.x0 = 120, .y0 = 40, .scale_x = 2.56, .scale_y = 2.56, .width = 1024, .height = 1024};
+    std::vector<Mask> masks;
+    for (size_t n = 0; n < 3; ++n) {
+      std::vector<Eigen::Vector2f> pixels(body_->rest.vertices.size());
+      project_vertices(camera_, skin_vertices(*body_, pose(n)), pixels);
+      draw_silhouette_reference(pixels, body_->rest.faces, window, masks.emplace_back());
+    }
+    std::vector<Counts> counts(3);
+    BatchRenderer(body_, camera_).counts({poses_.data(), 3, num_dofs_, num_dofs_}, window, masks[0], counts);
+    for (size_t n = 0; n < 3; ++n) {
+      EXPECT_GT(masks[n].count(), 10'000);
+      EXPECT_NEAR(static_cast<double>(counts[n].model), static_cast<double>(masks[n].count()), 12) << n;
+      EXPECT_NEAR(static_cast<double>(counts[n].both), static_cast<double>(and_count(masks[n], masks[0])), 12) << n;
+    }
+  }
+}
+
 TEST_F(BatchRendererTest, CroppedCountsAgreeWithCroppedMasks) {
   const Mask observed = normalised_silhouette(render_silhouette(*body_, camera_, pose(0)), 64, 64);
   std::vector<Counts> counts(200);

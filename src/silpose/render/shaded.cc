@@ -15,16 +15,15 @@ namespace {
 
 constexpr int kSamples = 2;  // a pixel, along each axis
 
-// A mesh as a camera sees it on a raster of `scale` samples a pixel.
+// A mesh as a camera sees it on a raster.
 struct SampledMesh {
   SampledMesh(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
-              std::span<const Face> mesh_faces, int scale)
-      : width(camera.width * scale), height(camera.height * scale), faces(mesh_faces.begin(), mesh_faces.end()) {
+              std::span<const Face> mesh_faces, const Window& window)
+      : width(window.width), height(window.height), faces(mesh_faces.begin(), mesh_faces.end()) {
     project_mesh(camera, vertices_in_world, mesh_faces, projected);
     faces.insert(faces.end(), projected.cut_faces.begin(), projected.cut_faces.end());
-    const double s = scale;
     points.resize(projected.pixels.size());
-    round_to_grid(projected.pixels, {.scale_x = s, .scale_y = s, .width = width, .height = height}, points);
+    round_to_grid(projected.pixels, window, points);
     for (const Eigen::Vector3f& vertex : vertices_in_world) {
       inverse_depth.push_back(1 / (camera.cam_from_world * vertex.cast<double>()).z());
     }
@@ -53,6 +52,11 @@ struct SampledMesh {
   std::vector<double> inverse_depth;
 };
 
+Window sampled_picture(const PinholeCamera& camera) {
+  return {
+      .scale_x = kSamples, .scale_y = kSamples, .width = kSamples * camera.width, .height = kSamples * camera.height};
+}
+
 std::vector<Eigen::Vector3f> vertex_normals(std::span<const Eigen::Vector3f> vertices, std::span<const Face> faces) {
   std::vector<Eigen::Vector3f> normals(vertices.size(), Eigen::Vector3f::Zero());
   for (const Face& face : faces) {
@@ -79,8 +83,8 @@ void draw_shadow(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
   std::vector<Eigen::Vector3f> on_floor;
   on_floor.reserve(vertices.size());
   for (const Eigen::Vector3f& vertex : vertices) on_floor.emplace_back(vertex - slope * vertex.y());
-  const SampledMesh mesh(camera, on_floor, faces, kSamples);
-  const Window window{.scale_x = kSamples, .scale_y = kSamples, .width = mesh.width, .height = mesh.height};
+  const Window window = sampled_picture(camera);
+  const SampledMesh mesh(camera, on_floor, faces, window);
   Mask mask;
   draw_silhouette_reference(mesh.projected.pixels, mesh.faces, window, mask);
   for (int y = 0; y < picture.height(); ++y) {
@@ -113,8 +117,13 @@ Eigen::Vector3f clothing_of(std::string_view joint) {
 
 Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
                         std::span<const Face> faces) {
-  Image<float> depth(camera.width, camera.height);
-  const SampledMesh mesh(camera, vertices_in_world, faces, 1);
+  return draw_depth(camera, vertices_in_world, faces, {.width = camera.width, .height = camera.height});
+}
+
+Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
+                        std::span<const Face> faces, const Window& window) {
+  Image<float> depth(window.width, window.height);
+  const SampledMesh mesh(camera, vertices_in_world, faces, window);
   for (const Face& face : mesh.faces) {
     mesh.for_each_sample(face, [&](int x, int y, double inverse_depth, const Eigen::Vector3d&) {
       float& nearest = depth.at(x, y);
@@ -137,7 +146,7 @@ void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
     draw_shadow(camera, vertices_in_world, faces, lighting, picture);
   }
 
-  const SampledMesh mesh(camera, vertices_in_world, faces, kSamples);
+  const SampledMesh mesh(camera, vertices_in_world, faces, sampled_picture(camera));
   const auto bounds = pixel_bounds(mesh.projected.pixels);
   if (!bounds) return;
   const Eigen::Vector3f to_light = lighting.to_light.normalized().cast<float>();

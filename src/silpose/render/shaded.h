@@ -12,6 +12,7 @@
 #include "silpose/geometry/camera.h"
 #include "silpose/geometry/mesh.h"
 #include "silpose/image/image.h"
+#include "silpose/shape/window.h"
 
 namespace silpose {
 
@@ -19,6 +20,9 @@ namespace silpose {
 // the silhouette.
 [[nodiscard]] Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
                                       std::span<const Face> faces);
+// The same in a window of the picture.
+[[nodiscard]] Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
+                                      std::span<const Face> faces, const Window& window);
 
 struct Lighting {
   Eigen::Vector3d to_light = {0.4, 1.0, 0.7};  // world, of any length; the light is far away

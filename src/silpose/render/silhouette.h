@@ -95,7 +95,7 @@ struct BatchView {
 };
 class BatchRenderer {
  public:
-  BatchRenderer(std::shared_ptr<const BodyModel> body, PinholeCamera camera);
+  BatchRenderer(std::shared_ptr<const BodyModel> body, const PinholeCamera& camera);
   // Poses with a number that is not finite count {0, 0}. REQUIRES: equal sizes of window, mask and `out`; num_dofs = D.
   void counts(const BatchView& poses, const Window& window, const Mask& observed,
               std::span<OutlineRenderer::Counts> out) const;

@@ -1,0 +1,90 @@
+// PoseProjector: from poses to points on a window's grid: ProjectedSkin's, in its slots, unless some of the body is too
+// near to be seen. That is rare: then the reference's vertices are taken and the faces cut (projected_mesh.h).
+// Threads: constant after construction; one Scratch per thread.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "silpose/render/projected_mesh.h"
+#include "silpose/render/projected_skin.h"
+
+namespace silpose {
+
+class PoseProjector {
+ public:
+  PoseProjector(std::shared_ptr<const BodyModel> body, const PinholeCamera& camera);
+  PoseProjector(const PoseProjector&) = delete;  // the skin refers to what stands beside it
+  PoseProjector& operator=(const PoseProjector&) = delete;
+
+  [[nodiscard]] const BodyModel& body() const { return *body_; }
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+  [[nodiscard]] std::span<const Face> faces() const { return skin_.faces(); }
+
+  class Scratch {
+   public:
+    [[nodiscard]] std::span<const GridPoint> points() const { return projected_.points; }
+    [[nodiscard]] bool some_unseen() const { return projected_.some_unseen; }
+    // What stands for faces that cross the near plane.
+    [[nodiscard]] std::span<const Face> cut_faces() const {
+      return some_unseen() ? std::span<const Face>(cut_.cut_faces) : std::span<const Face>();
+    }
+    [[nodiscard]] const PixelBounds& bounds() const { return projected_.bounds; }
+
+   private:
+    friend class PoseProjector;
+    ProjectedSkin::Scratch projected_;
+    ProjectedMesh cut_;  // only where some is unseen, as the next
+    std::vector<Eigen::Vector3f> vertices_in_world_;
+  };
+
+  // To pixels: bounds() are known then. False when nothing is seen, or when the pose has a number that is not finite.
+  bool project(std::span<const double> pose, Scratch& scratch) const;
+  // From pixels to a window's grid: points() are known then.
+  void round(const Window& window, Scratch& scratch) const;
+  // Both, for a window that is known beforehand; bounds() mean nothing.
+  bool project_to_grid(std::span<const double> pose, const Window& window, Scratch& scratch) const;
+
+  // 1 / depth of all points() after project(); what is unseen means nothing.
+  void inverse_depths(const Scratch& scratch, std::vector<float>& inverse_depth) const;
+
+ private:
+  void cut(std::span<const double> pose, Scratch& scratch) const;
+
+  std::shared_ptr<const BodyModel> body_;
+  PinholeCamera camera_;
+  ProjectedSkin skin_;
+};
+
+// Keeps what threads work in from one range of poses to the next, so that nothing is allocated once every thread has
+// had its own.
+template <class Scratch>
+class ScratchPool {
+ public:
+  template <class... Args>
+  [[nodiscard]] std::unique_ptr<Scratch> take(const Args&... args) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!free_.empty()) {
+        std::unique_ptr<Scratch> scratch = std::move(free_.back());
+        free_.pop_back();
+        return scratch;
+      }
+    }
+    return std::make_unique<Scratch>(args...);
+  }
+  void give_back(std::unique_ptr<Scratch> scratch) {
+    const std::lock_guard lock(mutex_);
+    free_.push_back(std::move(scratch));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Scratch>> free_;
+};
+
+}  // namespace silpose
