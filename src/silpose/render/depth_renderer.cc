@@ -1,6 +1,7 @@
 #include "silpose/render/depth_renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 #include <vector>
 
@@ -13,7 +14,8 @@ namespace silpose {
 namespace {
 
 // What one thread draws a pose with. Only `drawn` of the raster is not 0.
-struct DepthScratch {
+class DepthScratch {
+ public:
   PoseProjector::Scratch projected;
   std::vector<float> inverse_depth;  // [points]
   std::vector<float> nearness;       // [height, width] 1 / depth; 0 where there is nothing
@@ -34,20 +36,55 @@ struct DepthScratch {
   }
   [[nodiscard]] float* row(int y) { return nearness.data() + static_cast<size_t>(y) * static_cast<size_t>(width); }
 
+  // The pixels of fill_triangle(), for triangles that are smaller than pixels most of the time: most hold no centre.
   void draw(const Face& face) {
     const std::span<const GridPoint> points = projected.points();
     const GridPoint a = points[face[0]], b = points[face[1]], c = points[face[2]];
-    if (a.unseen() || b.unseen() || c.unseen()) return;
-    const double near_a = inverse_depth[face[0]], near_b = inverse_depth[face[1]], near_c = inverse_depth[face[2]];
-    fill_triangle(a, b, c, width, height, [&](int x, int y, int64_t wa, int64_t wb, int64_t wc) {
-      const double sum =
-          static_cast<double>(wa) * near_a + static_cast<double>(wb) * near_b + static_cast<double>(wc) * near_c;
-      float& nearest = row(y)[x];
-      nearest = std::max(nearest, static_cast<float>(sum / static_cast<double>(wa + wb + wc)));
-      drawn = {std::min(drawn.x_begin, x), std::min(drawn.y_begin, y), std::max(drawn.x_end, x + 1),
-               std::max(drawn.y_end, y + 1)};
-    });
+    const int x_begin = std::max(0, first_centre_from(std::min({a.x, b.x, c.x})));
+    const int x_end = std::min(width, first_centre_from(std::max({a.x, b.x, c.x})));  // right and bottom are outside
+    const int y_begin = std::max(0, first_centre_from(std::min({a.y, b.y, c.y})));
+    const int y_end = std::min(height, first_centre_from(std::max({a.y, b.y, c.y})));
+    if (x_begin >= x_end || y_begin >= y_end || a.unseen() || b.unseen() || c.unseen()) return;
+    const int64_t area = side_of_edge(a, b, c);
+    if (area == 0) return;
+    const int64_t turn = area > 0 ? 1 : -1;
+    const std::array<Side, 3> sides = {Side(b, c, turn, x_begin, y_begin), Side(c, a, turn, x_begin, y_begin),
+                                       Side(a, b, turn, x_begin, y_begin)};
+    const double per_area = 1 / static_cast<double>(area * turn);
+    const double near_a = inverse_depth[face[0]] * per_area, near_b = inverse_depth[face[1]] * per_area,
+                 near_c = inverse_depth[face[2]] * per_area;
+    for (int y = y_begin; y < y_end; ++y) {
+      int64_t of_a = sides[0].at_row(y - y_begin), of_b = sides[1].at_row(y - y_begin),
+              of_c = sides[2].at_row(y - y_begin);
+      float* const nearest = row(y);
+      for (int x = x_begin; x < x_end; ++x) {
+        if (((of_a - sides[0].least) | (of_b - sides[1].least) | (of_c - sides[2].least)) >= 0) {
+          const double nearness_here = static_cast<double>(of_a) * near_a + static_cast<double>(of_b) * near_b +
+                                       static_cast<double>(of_c) * near_c;
+          nearest[x] = std::max(nearest[x], static_cast<float>(nearness_here));
+        }
+        of_a += sides[0].by_x;
+        of_b += sides[1].by_x;
+        of_c += sides[2].by_x;
+      }
+    }
+    drawn = {std::min(drawn.x_begin, x_begin), std::min(drawn.y_begin, y_begin), std::max(drawn.x_end, x_end),
+             std::max(drawn.y_end, y_end)};
   }
+
+ private:
+  // On which side of an edge centres of pixels lie, as side_of_edge(), from one pixel to the next.
+  struct Side {
+    Side(GridPoint from, GridPoint to, int64_t turn, int x, int y)
+        : first(turn *
+                side_of_edge(from, to, {x * kGridPerPixel + kGridHalfPixel, y * kGridPerPixel + kGridHalfPixel})),
+          by_x(-turn * (to.y - from.y) * kGridPerPixel),
+          by_y(turn * (to.x - from.x) * kGridPerPixel),
+          least(by_x > 0 || (by_x == 0 && by_y > 0) ? 0 : 1) {}
+    [[nodiscard]] int64_t at_row(int rows_below) const { return first + rows_below * by_y; }
+    int64_t first, by_x, by_y;
+    int64_t least;  // inside; edges on the left or at the top are
+  };
 };
 
 }  // namespace
