@@ -8,6 +8,7 @@
 
 #include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
+#include "silpose/body/random_pose.h"
 #include "silpose/geometry/rigid3.h"
 #include "silpose/render/silhouette.h"
 
@@ -15,20 +16,6 @@ namespace silpose::bench {
 namespace {
 
 constexpr int kSize = 128, kCameras = 4;
-
-std::vector<std::vector<double>> random_poses(const BodyModel& body, size_t count) {
-  const std::vector<double> standing = standing_pose(body);
-  const auto dofs = body.skeleton.dofs();
-  std::vector<std::vector<double>> poses;
-  for (size_t n = 0; n < count; ++n) {
-    Rng rng(3, n);
-    std::vector<double>& pose = poses.emplace_back(standing);
-    for (size_t d = 0; d < dofs.size(); ++d) {
-      if (!dofs[d].is_translation) pose[d] = rng.uniform(dofs[d].lower, dofs[d].upper);
-    }
-  }
-  return poses;
-}
 
 struct Views {
   std::vector<PinholeCamera> cameras;
@@ -47,7 +34,12 @@ struct Views {
 
 Agreement measure_agreement(const std::shared_ptr<const BodyModel>& body, size_t num_poses) {
   const Views views;
-  const auto poses = random_poses(*body, num_poses);
+  const std::vector<double> standing = standing_pose(*body);
+  std::vector<std::vector<double>> poses;
+  for (size_t n = 0; n < num_poses; ++n) {
+    Rng rng(3, n);
+    poses.push_back(random_pose(body->skeleton, standing, rng));
+  }
   const EdgeTopology topology(body->rest.faces);
   std::vector<Mask> references(num_poses * kCameras);
   // draw(renderer, pixels, index) for every pose and camera.

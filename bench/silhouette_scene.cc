@@ -5,23 +5,10 @@
 
 #include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
+#include "silpose/body/random_pose.h"
 
 namespace silpose::bench {
 namespace {
-
-std::vector<double> random_poses(const BodyModel& body, size_t count) {
-  Rng rng(1);
-  const std::vector<double> standing = standing_pose(body);
-  const auto dofs = body.skeleton.dofs();
-  std::vector<double> poses;
-  for (size_t n = 0; n < count; ++n) {
-    for (size_t d = 0; d < dofs.size(); ++d) {
-      const double range = dofs[d].is_translation ? 0.3 : (dofs[d].upper - dofs[d].lower) / 3;
-      poses.push_back(standing[d] + range * rng.uniform(-0.5, 0.5));
-    }
-  }
-  return poses;
-}
 
 std::vector<Eigen::Vector2f> pixels_of(const SilhouetteScene& scene, std::span<const double> pose) {
   const auto vertices = skin_vertices(*scene.body, pose);
@@ -44,7 +31,12 @@ SilhouetteScene standing_scene(std::shared_ptr<const BodyModel> body, size_t num
       .x0 = 160, .y0 = 130, .scale_x = size / kExtent, .scale_y = size / kExtent, .width = size, .height = size};
   scene.num_poses = num_poses;
   scene.num_dofs = static_cast<size_t>(scene.body->skeleton.num_dofs());
-  scene.poses = random_poses(*scene.body, num_poses + 1);
+  const std::vector<double> standing = standing_pose(*scene.body);
+  Rng rng(1);
+  for (size_t n = 0; n <= num_poses; ++n) {
+    const auto pose = random_pose(scene.body->skeleton, standing, rng, {.part = 1.0 / 3, .shift_m = 0.15});
+    scene.poses.insert(scene.poses.end(), pose.begin(), pose.end());
+  }
   scene.observed = plain_silhouette(scene, scene.pose(num_poses));
   return scene;
 }

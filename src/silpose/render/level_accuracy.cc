@@ -6,20 +6,12 @@
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
+#include "silpose/body/random_pose.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/shape/normalised_silhouette.h"
 
 namespace silpose {
 namespace {
-
-std::vector<double> random_pose(const BodyModel& body, std::span<const double> standing, Rng& rng) {
-  std::vector<double> pose(standing.begin(), standing.end());
-  const auto dofs = body.skeleton.dofs();
-  for (size_t d = 0; d < dofs.size(); ++d) {
-    if (!dofs[d].is_translation && !dofs[d].is_shape) pose[d] = rng.uniform(dofs[d].lower, dofs[d].upper);
-  }
-  return pose;
-}
 
 // All around at 2.5 statures, in turns from half and from one and a half of the body's height.
 std::vector<PinholeCamera> cameras_around(double height_m, int num_views) {
@@ -49,7 +41,7 @@ LevelAccuracy level_accuracy(const BodyModel& body, const BodyLevel& level, cons
     std::vector<Eigen::Vector2f> pixels(body.rest.vertices.size()), coarse_pixels(level.vertices.size());
     for (size_t n = begin; n < end; ++n) {
       Rng rng(options.seed, n);
-      const auto vertices = skin_vertices(body, random_pose(body, standing, rng));
+      const auto vertices = skin_vertices(body, random_pose(body.skeleton, standing, rng));
       for (size_t c = 0; c < cameras.size(); ++c) {
         project_vertices(cameras[c], vertices, pixels);
         for (size_t v = 0; v < level.vertices.size(); ++v) coarse_pixels[v] = pixels[level.vertices[v]];
