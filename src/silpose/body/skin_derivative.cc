@@ -1,6 +1,7 @@
 #include "silpose/body/skin_derivative.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "silpose/base/check.h"
 
@@ -15,11 +16,13 @@ namespace silpose::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+using Tag = hn::CappedTag<float, AlignedFloats::kLanes>;
+
 // One register of a point's two rows, from column `first` on. A point x that turns about an axis through c by the
 // right hand moves by axis x (x - c) = axis x x + shift.
-void rows_of_point(const SkinDerivative::Part* begin, const SkinDerivative::Part* end, const float* projection,
-                   const float* motion, size_t stride, size_t first, float* rows) {
-  const hn::ScalableTag<float> d;
+HWY_INLINE void rows_of_point(const SkinDerivative::Part* begin, const SkinDerivative::Part* end,
+                              const float* projection, const float* motion, size_t stride, size_t first, float* rows) {
+  const Tag d;
   auto x = hn::Zero(d), y = x, z = x;
   for (const auto* part = begin; part != end; ++part) {
     const float* const of_joint = motion + part->joint_idx * 6 * stride + first;
@@ -43,14 +46,21 @@ void rows_of_point(const SkinDerivative::Part* begin, const SkinDerivative::Part
   }
 }
 
-void rows_of_points(const SkinDerivative::Part* parts, const uint32_t* part_end, size_t num_points,
-                    const float* projections, const float* motion, size_t stride, float* rows) {
-  const size_t lanes = hn::Lanes(hn::ScalableTag<float>());
+void rows_of_points(const SkinDerivative::Part* parts, const uint32_t* part_end, const uint32_t* blocks,
+                    size_t num_points, const float* projections, const float* motion, size_t stride, float* rows) {
+  const Tag d;
+  const size_t lanes = hn::Lanes(d);
   const SkinDerivative::Part* begin = parts;
   for (size_t p = 0; p < num_points; ++p, rows += 2 * stride, projections += 6) {
     const SkinDerivative::Part* const end = parts + part_end[p];
-    size_t column = 0;
-    for (; column < stride; column += lanes) rows_of_point(begin, end, projections, motion, stride, column, rows);
+    for (size_t column = 0; column < stride; column += lanes) {
+      if (blocks[p] >> (column / AlignedFloats::kLanes) & 1) {
+        rows_of_point(begin, end, projections, motion, stride, column, rows);
+      } else {
+        hn::Store(hn::Zero(d), d, rows + column);
+        hn::Store(hn::Zero(d), d, rows + stride + column);
+      }
+    }
     begin = end;
   }
 }
@@ -63,9 +73,52 @@ namespace silpose {
 
 HWY_EXPORT(rows_of_points);
 
+namespace {
+
+// A column for every DOF, so that limbs, whose DOF fit into a block, are each in one: first what moves more, then
+// limbs, larger ones first, each into the first block that has room.
+std::vector<uint32_t> limb_columns(const Skeleton& skeleton) {
+  constexpr size_t kBlock = AlignedFloats::kLanes;
+  const auto joints = skeleton.joints();
+  std::vector<size_t> num_below(joints.size(), 0);  // DOF of the joint and of those below it
+  for (size_t j = joints.size(); j-- > 0;) {
+    num_below[j] += joints[j].dof_indices.size();
+    if (joints[j].parent_idx >= 0) num_below[static_cast<size_t>(joints[j].parent_idx)] += num_below[j];
+  }
+  std::vector<size_t> limb(joints.size()), limbs;  // the joint that a limb begins with
+  std::vector<uint32_t> columns(skeleton.dofs().size()), used(1, 0);
+  for (size_t j = 0; j < joints.size(); ++j) {
+    const bool is_trunk = num_below[j] > kBlock;
+    const auto parent = static_cast<size_t>(std::max(joints[j].parent_idx, 0));
+    limb[j] = j == 0 || num_below[parent] > kBlock ? j : limb[parent];
+    if (!is_trunk && limb[j] == j) limbs.push_back(j);
+    for (const int d : joints[j].dof_indices) {
+      if (!is_trunk) continue;
+      if (used.back() == kBlock) used.push_back(0);
+      columns[static_cast<size_t>(d)] = static_cast<uint32_t>((used.size() - 1) * kBlock) + used.back()++;
+    }
+  }
+  std::ranges::stable_sort(limbs, std::greater(), [&](size_t j) { return num_below[j]; });
+  for (const size_t first : limbs) {
+    size_t block = 0;
+    while (block < used.size() && used[block] + num_below[first] > kBlock) ++block;
+    if (block == used.size()) used.push_back(0);
+    for (size_t j = first; j < joints.size(); ++j) {
+      if (limb[j] != first) continue;
+      for (const int d : joints[j].dof_indices) {
+        columns[static_cast<size_t>(d)] = static_cast<uint32_t>(block * kBlock) + used[block]++;
+      }
+    }
+  }
+  return columns;
+}
+
+}  // namespace
+
 SkinDerivative::SkinDerivative(const BodyModel& body)
     : body_(&body),
-      stride_(AlignedFloats::padded(body.skeleton.dofs().size() + 1)),
+      columns_(limb_columns(body.skeleton)),
+      stride_(AlignedFloats::padded(*std::ranges::max_element(columns_) + 1)),
       origin_(Eigen::Vector3f::Zero()),
       origin_from_rest_(body.skeleton.joints().size(), Eigen::Matrix4f::Zero()),
       turn_and_shift_(body.skeleton.dofs().size()) {
@@ -85,6 +138,15 @@ SkinDerivative::SkinDerivative(const BodyModel& body)
     }
   }
   motion_.resize(joints.size() * 6 * stride_);
+  check(stride_ <= 32 * AlignedFloats::kLanes, "SkinDerivative: {} DOF", columns_.size());
+  std::vector<uint32_t> joint_blocks(joints.size(), 0);
+  for (const MovedBy& moved : moved_by_) {
+    joint_blocks[moved.joint_idx] |= 1u << (columns_[moved.dof_idx] / AlignedFloats::kLanes);
+  }
+  for (size_t v = 0; v < body.rest.vertices.size(); ++v) {
+    uint32_t& blocks = vertex_blocks_.emplace_back(0);
+    for (uint32_t i = entry_start_[v]; i < entry_start_[v + 1]; ++i) blocks |= joint_blocks[entries_[i].joint_idx];
+  }
 }
 
 void SkinDerivative::set_pose(std::span<const double> pose, std::span<const Rigid3> world_from_joint,
@@ -110,7 +172,7 @@ void SkinDerivative::set_pose(std::span<const double> pose, std::span<const Rigi
     }
   }
   for (const MovedBy& moved : moved_by_) {
-    float* const column = motion_.data() + moved.joint_idx * 6 * stride_ + moved.dof_idx;
+    float* const column = motion_.data() + moved.joint_idx * 6 * stride_ + columns_[moved.dof_idx];
     for (size_t k = 0; k < 6; ++k) column[k * stride_] = turn_and_shift_[moved.dof_idx][static_cast<Eigen::Index>(k)];
   }
 }
@@ -118,6 +180,7 @@ void SkinDerivative::set_pose(std::span<const double> pose, std::span<const Rigi
 void SkinDerivative::set_points(std::span<const uint32_t> vertices) {
   parts_.clear();
   part_end_.clear();
+  point_blocks_.clear();
   positions_.clear();
   for (const uint32_t vertex : vertices) {
     Eigen::Vector4f x(origin_.x(), origin_.y(), origin_.z(), 0);
@@ -130,6 +193,7 @@ void SkinDerivative::set_points(std::span<const uint32_t> vertices) {
       x += part;
     }
     part_end_.push_back(static_cast<uint32_t>(parts_.size()));
+    point_blocks_.push_back(vertex_blocks_[vertex]);
     positions_.emplace_back(x.head<3>());
   }
 }
@@ -139,7 +203,8 @@ void SkinDerivative::find_rows(std::span<const Eigen::Matrix<float, 2, 3>> proje
         positions_.size());
   if (projections.empty()) return;
   HWY_DYNAMIC_DISPATCH(rows_of_points)
-  (parts_.data(), part_end_.data(), positions_.size(), projections.data()->data(), motion_.data(), stride_, rows);
+  (parts_.data(), part_end_.data(), point_blocks_.data(), positions_.size(), projections.data()->data(), motion_.data(),
+   stride_, rows);
 }
 
 }  // namespace silpose

@@ -30,10 +30,13 @@ class SkinDerivative {
   // Of the points [P].
   [[nodiscard]] std::span<const Eigen::Vector3f> positions() const { return positions_; }
 
-  // What a row takes: D and at least one more, which is zero.
+  // Columns of a row come in blocks of AlignedFloats::kLanes, a limb's in one block: where the derivative by each DOF
+  // is [D], how many there are, and, a bit a block, where the rows of each point are not zero [P].
+  [[nodiscard]] std::span<const uint32_t> columns() const { return columns_; }
   [[nodiscard]] size_t row_stride() const { return stride_; }
+  [[nodiscard]] std::span<const uint32_t> blocks() const { return point_blocks_; }
 
-  // rows [P, 2, row_stride()], aligned as AlignedFloats: d (projections[p] x_p) / d pose, then zeros.
+  // rows [P, 2, row_stride()], aligned as AlignedFloats: d (projections[p] x_p) / d pose by columns(), the others zero.
   void find_rows(std::span<const Eigen::Matrix<float, 2, 3>> projections, float* rows) const;
 
   // What find_rows() computes from: a joint's part of a point, about origin_.
@@ -52,7 +55,9 @@ class SkinDerivative {
   };
 
   const BodyModel* body_;
-  size_t stride_;
+  std::vector<uint32_t> columns_;  // [D]
+  size_t stride_ = 0;
+  std::vector<uint32_t> vertex_blocks_;                  // [V]
   std::vector<uint32_t> entry_start_;                    // [V + 1]
   std::vector<Entry> entries_;                           // a vertex and a joint that moves it
   std::vector<MovedBy> moved_by_;                        // every joint with every DOF above it
@@ -62,6 +67,7 @@ class SkinDerivative {
   AlignedFloats motion_;                                 // [J, 6, stride] turns x y z, shifts x y z; zero for other DOF
   std::vector<Part> parts_;                              // of the points, one after another
   std::vector<uint32_t> part_end_;                       // [P]
+  std::vector<uint32_t> point_blocks_;                   // [P]
   std::vector<Eigen::Vector3f> positions_;               // [P]
 };
 

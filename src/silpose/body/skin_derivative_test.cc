@@ -31,17 +31,16 @@ TEST(SkinDerivative, AgreesWithFiniteDifferencesOfSkinning) {
     other << (turn * g).transpose(), (turn * h).transpose();
     derivative.find_rows(std::vector{one, other}, rows.data());
     const auto row = [&](size_t i) { return rows.data() + i * derivative.row_stride(); };
-    for (size_t i = 0; i < 4; ++i) EXPECT_EQ(row(i)[pose.size()], 0);
     for (size_t d = 0; d < pose.size(); ++d) {
       const double step = 1e-3;
       std::vector<double> more = pose, less = pose;
       more[d] += step;
       less[d] -= step;
       const auto x = skin_vertices(body, more), y = skin_vertices(body, less);
-      EXPECT_NEAR(row(0)[d], h.dot(x[w] - y[w]) / (2 * step), 2e-3) << d;
-      EXPECT_NEAR(row(1)[d], g.dot(x[w] - y[w]) / (2 * step), 2e-3) << d;
-      EXPECT_NEAR(row(2)[d], g.dot(x[v] - y[v]) / (2 * step), 2e-3) << d;
-      EXPECT_NEAR(row(3)[d], h.dot(x[v] - y[v]) / (2 * step), 2e-3) << d;
+      EXPECT_NEAR(row(0)[derivative.columns()[d]], h.dot(x[w] - y[w]) / (2 * step), 2e-3) << d;
+      EXPECT_NEAR(row(1)[derivative.columns()[d]], g.dot(x[w] - y[w]) / (2 * step), 2e-3) << d;
+      EXPECT_NEAR(row(2)[derivative.columns()[d]], g.dot(x[v] - y[v]) / (2 * step), 2e-3) << d;
+      EXPECT_NEAR(row(3)[derivative.columns()[d]], h.dot(x[v] - y[v]) / (2 * step), 2e-3) << d;
     }
   }
 }

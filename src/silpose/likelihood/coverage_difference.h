@@ -12,6 +12,7 @@
 #include "silpose/base/aligned_floats.h"
 #include "silpose/likelihood/coverage_kernels.h"
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/likelihood/jacobian_kernels.h"
 #include "silpose/render/span_kernels.h"
 
 namespace silpose {
@@ -33,15 +34,21 @@ class CoverageDifference {
     return raster_->confidence.empty() ? 1.0f : raster_->confidence[raster_->at(end_x_[end_cell], end_y_[end_cell])];
   }
 
-  // J = d D / d pose [cells that hold ends, stride], for the caller to fill: D columns, then at least one of zeros.
-  // REQUIRES: stride a multiple of AlignedFloats::kLanes.
-  float* jacobian(size_t stride);
+  // J = d D / d pose, for the caller to fill: rows [cells that hold ends, stride], and for each the blocks of kLanes
+  // columns where it is not zero. REQUIRES: stride a multiple of AlignedFloats::kLanes.
+  struct Jacobian {
+    float* rows;
+    uint32_t* blocks;
+  };
+  Jacobian jacobian(size_t stride);
 
   // After add_model(): subtracts the observation, and gives D' K D.
   double finish();
 
-  // After finish(), with the Jacobian filled: gradient += weight * J' K D, hessian += weight * J' K J.
-  void add_normal_equations(double weight, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian);
+  // After finish(), with the Jacobian filled: gradient += weight * J' K D, hessian += weight * J' K J, where the
+  // derivative by DOF d is in column `columns`[d] of J.
+  void add_normal_equations(double weight, std::span<const uint32_t> columns, Eigen::VectorXd& gradient,
+                            Eigen::MatrixXd& hessian);
 
  private:
   static constexpr int kMargin = AlignedFloats::kLanes;  // cells beyond the picture that stay zero
@@ -54,7 +61,6 @@ class CoverageDifference {
   [[nodiscard]] size_t rank_at(int cell_x, int cell_y) const {
     return static_cast<size_t>(cell_y) * rank_stride_ + static_cast<size_t>(cell_x + kMargin);
   }
-  void number_rows();
 
   const CoverageEvidence::Raster* raster_ = nullptr;
   int width_ = 0, height_ = 0;
@@ -67,12 +73,18 @@ class CoverageDifference {
   CellBox model_, drawn_;                 // cells that the model touches, and the observation
   // [ends]
   size_t num_ends_ = 0;
-  std::vector<int32_t> end_at_, end_rank_at_, number_;
+  std::vector<int32_t> end_cell_x_, end_cell_y_, end_at_, number_;
   std::vector<float> end_here_, end_beyond_;
-  std::vector<int32_t> rank_;           // row by row: [height, rank_stride_] 1: holds ends; then how many do before it
-  std::vector<int32_t> end_x_, end_y_;  // cells that hold an end
+  // Cells that hold an end: a bit each [height, words], how many come before each cell [height, rank_stride_], and
+  // they.
+  size_t words_ = 0;
+  std::vector<uint64_t> holds_end_;
+  std::vector<int32_t> rank_, end_x_, end_y_;
   size_t num_end_cells_ = 0, jacobian_stride_ = 0;
   AlignedFloats jacobian_, half_near_, product_;
+  std::vector<uint32_t> blocks_, near_blocks_;
+  std::vector<uint64_t> bits_, near_bits_;
+  std::vector<float> blurred_at_ends_;
 };
 
 }  // namespace silpose

@@ -1,7 +1,5 @@
-// What CoverageDifference spends its time on, for whatever vector registers the machine has (chosen at run time): the
-// blur, and the products of a Jacobian whose rows are cells. Numbers beyond what is asked for may be written where a
-// size is rounded up to AlignedFloats::kLanes.
-// Threads: pure functions.
+// The cells of CoverageDifference, for whatever vector registers the machine has (chosen at run time). Numbers beyond
+// what is asked for may be written where a size is rounded up to AlignedFloats::kLanes. Threads: pure functions.
 #pragma once
 
 #include <array>
@@ -27,13 +25,13 @@ struct CellGrid {
   float picture_width = 0;  // pixels
   float cells_per_pixel = 1, cells_per_row = 1;
   int32_t last_x = 0;
-  int32_t stride = 0, rank_stride = 0, margin = 0;  // as CoverageDifference::at() and rank_at()
+  int32_t stride = 0, margin = 0;  // as CoverageDifference::at()
 };
 
-// Of each end of a span: the place of its cell, and of what is kept by row, -1 for ends outside of the picture; by how
-// much it changes the coverage from its cell on, and how much more from the next.
+// Of each end of a span: its cell, x = -1 for ends outside of the picture; its place; by how much it changes the
+// coverage from its cell on, and how much more from the next.
 struct PlacedEnds {
-  int32_t *at, *rank_at;
+  int32_t *x, *y, *at;
   float *here, *beyond;
 };
 
@@ -55,34 +53,14 @@ void subtract_observed(const ObservedCells& cells, float* difference, size_t str
 // and `blurred` are padded(width) apart and aligned.
 double blur_cells(const float* difference, size_t stride, size_t width, size_t height, float* half, float* blurred);
 
-// Cells that hold an end, in row-major order.
-struct EndCells {
-  const int32_t *x, *y;  // [n]
-  size_t count = 0;
-  // rank[y * rank_stride + x] is how many come before cell (x, y); it can be read kBlurRadius + 1 cells to either side,
-  // in rows below `y_end`.
-  const int32_t* rank;
-  ptrdiff_t rank_stride;
-  int32_t y_end;
+// Cells that hold an end, one after another.
+struct NumberedCells {
+  int32_t *x, *y;
+  size_t* count;
 };
 
-// An end of a span: what it adds to its cell's row, of the two rows (pixel x, then y) of each of two points.
-struct EndRow {
-  uint32_t cell;
-  uint32_t points[2];
-  float of_x[2], of_y[2];
-};
-
-// jacobian [cells, stride] = what the ends of each cell add up to; point_rows [points, 2, stride].
-void add_up_ends(const EndRow* ends, size_t num_ends, const float* point_rows, size_t stride, size_t num_cells,
-                 float* jacobian);
-
-// half_near [n, stride] = for each row i of `jacobian` [n, stride], K_ii / 2 J_i + sum over j > i of K_ij J_j, so that
-// J' K J = M + M' with M = J' half_near. REQUIRES: rows aligned, stride a multiple of kLanes.
-void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near);
-
-// product [rounded up to 4 rows, stride] = the first `num_columns` columns of a, transposed, times b; a, b [n, stride].
-// REQUIRES: as above.
-void transposed_product(const float* a, const float* b, size_t n, size_t stride, size_t num_columns, float* product);
+// Numbers the cells of row y that hold an end, a bit a cell in `bits`. Writes, for every cell of the box's row and
+// `margin` beyond, how many come before it: rank[x]. Up to kLanes more are written.
+void number_row(const uint64_t* bits, const CellBox& box, int y, int margin, int32_t* rank, const NumberedCells& cells);
 
 }  // namespace silpose

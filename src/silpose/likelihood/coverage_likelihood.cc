@@ -153,7 +153,7 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
     }
     const double weight = evident.trust / evidence.noise[c] * outline_scale(raster.cell);
     equations.energy += weight * s.difference.finish();
-    s.difference.add_normal_equations(weight, equations.gradient, equations.hessian);
+    s.difference.add_normal_equations(weight, s.end_motion.columns(), equations.gradient, equations.hessian);
   }
   return equations;
 }

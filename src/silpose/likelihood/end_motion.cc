@@ -10,15 +10,6 @@ LensDerivative::LensDerivative(const PinholeCamera& camera)
   lens_.cam_from_world = {};
 }
 
-Eigen::Matrix<float, 2, 3> LensDerivative::at(const Eigen::Vector3f& x_in_cam) const {
-  if (!straight_) return lens_.project_jacobian(x_in_cam.cast<double>()).cast<float>();
-  const float inverse_depth = 1 / x_in_cam.z();
-  const float u = fx_ * inverse_depth, v = fy_ * inverse_depth;
-  Eigen::Matrix<float, 2, 3> jacobian;
-  jacobian << u, 0, -u * x_in_cam.x() * inverse_depth, 0, v, -v * x_in_cam.y() * inverse_depth;
-  return jacobian;
-}
-
 EndMotion::EndMotion(const BodyModel& body) : skin_derivative_(body) {}
 
 void EndMotion::fill_jacobian(const OutlineSpans& spans, std::span<const uint32_t> vertex_of_slot,
@@ -66,8 +57,9 @@ void EndMotion::fill_jacobian(const OutlineSpans& spans, std::span<const uint32_
   const size_t stride = skin_derivative_.row_stride();
   if (point_rows_.size() < 2 * num_points * stride) point_rows_.resize(2 * num_points * stride);
   skin_derivative_.find_rows(projections_, point_rows_.data());
-  add_up_ends(ends_.data(), num_ends, point_rows_.data(), stride, difference.num_end_cells(),
-              difference.jacobian(stride));
+  const CoverageDifference::Jacobian jacobian = difference.jacobian(stride);
+  add_up_ends(ends_.data(), num_ends, {point_rows_.data(), skin_derivative_.blocks().data()}, stride,
+              difference.num_end_cells(), jacobian.rows, jacobian.blocks);
 }
 
 }  // namespace silpose
