@@ -46,7 +46,7 @@ HWY_INLINE void rows_of_point(const SkinDerivative::Part* begin, const SkinDeriv
   }
 }
 
-void rows_of_points(const SkinDerivative::Part* parts, const uint32_t* part_end, const uint32_t* blocks,
+void rows_of_points(const SkinDerivative::Part* parts, const uint32_t* part_end, const int32_t* blocks,
                     size_t num_points, const float* projections, const float* motion, size_t stride, float* rows) {
   const Tag d;
   const size_t lanes = hn::Lanes(d);
@@ -119,7 +119,7 @@ SkinDerivative::SkinDerivative(const BodyModel& body)
     : body_(&body),
       columns_(limb_columns(body.skeleton)),
       stride_(AlignedFloats::padded(*std::ranges::max_element(columns_) + 1)),
-      origin_(Eigen::Vector3f::Zero()),
+      origin_(Eigen::Vector4f::Zero()),
       origin_from_rest_(body.skeleton.joints().size(), Eigen::Matrix4f::Zero()),
       turn_and_shift_(body.skeleton.dofs().size()) {
   const SkinWeights& skin = body.skin;
@@ -138,13 +138,13 @@ SkinDerivative::SkinDerivative(const BodyModel& body)
     }
   }
   motion_.resize(joints.size() * 6 * stride_);
-  check(stride_ <= 32 * AlignedFloats::kLanes, "SkinDerivative: {} DOF", columns_.size());
-  std::vector<uint32_t> joint_blocks(joints.size(), 0);
+  check(stride_ < 32 * AlignedFloats::kLanes, "SkinDerivative: {} DOF", columns_.size());
+  std::vector<int32_t> joint_blocks(joints.size(), 0);
   for (const MovedBy& moved : moved_by_) {
-    joint_blocks[moved.joint_idx] |= 1u << (columns_[moved.dof_idx] / AlignedFloats::kLanes);
+    joint_blocks[moved.joint_idx] |= 1 << (columns_[moved.dof_idx] / AlignedFloats::kLanes);
   }
   for (size_t v = 0; v < body.rest.vertices.size(); ++v) {
-    uint32_t& blocks = vertex_blocks_.emplace_back(0);
+    int32_t& blocks = vertex_blocks_.emplace_back(0);
     for (uint32_t i = entry_start_[v]; i < entry_start_[v + 1]; ++i) blocks |= joint_blocks[entries_[i].joint_idx];
   }
 }
@@ -155,7 +155,7 @@ void SkinDerivative::set_pose(std::span<const double> pose, std::span<const Rigi
   const Eigen::Matrix3Xd axes = skeleton.dof_axes(pose, world_from_joint);
   const Eigen::Vector3d origin = frame_from_world * world_from_joint[0].translation;
   const Rigid3 origin_from_world = {frame_from_world.rotation, frame_from_world.translation - origin};
-  origin_ = origin.cast<float>();
+  origin_.head<3>() = origin.cast<float>();
   for (size_t j = 0; j < world_from_joint.size(); ++j) {
     const Rigid3 matrix = origin_from_world * (world_from_joint[j] * body_->joint_from_rest[j]);
     origin_from_rest_[j].topRows<3>() << matrix.rotation.cast<float>(), matrix.translation.cast<float>();
@@ -183,7 +183,7 @@ void SkinDerivative::set_points(std::span<const uint32_t> vertices) {
   point_blocks_.clear();
   positions_.clear();
   for (const uint32_t vertex : vertices) {
-    Eigen::Vector4f x(origin_.x(), origin_.y(), origin_.z(), 0);
+    Eigen::Vector4f x = origin_;
     for (uint32_t i = entry_start_[vertex]; i < entry_start_[vertex + 1]; ++i) {
       const Eigen::Matrix4f& matrix = origin_from_rest_[entries_[i].joint_idx];
       const Eigen::Vector4f& rest = entries_[i].weighted_rest;

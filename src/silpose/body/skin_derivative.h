@@ -34,7 +34,7 @@ class SkinDerivative {
   // is [D], how many there are, and, a bit a block, where the rows of each point are not zero [P].
   [[nodiscard]] std::span<const uint32_t> columns() const { return columns_; }
   [[nodiscard]] size_t row_stride() const { return stride_; }
-  [[nodiscard]] std::span<const uint32_t> blocks() const { return point_blocks_; }
+  [[nodiscard]] std::span<const int32_t> blocks() const { return point_blocks_; }
 
   // rows [P, 2, row_stride()], aligned as AlignedFloats: d (projections[p] x_p) / d pose by columns(), the others zero.
   void find_rows(std::span<const Eigen::Matrix<float, 2, 3>> projections, float* rows) const;
@@ -57,17 +57,17 @@ class SkinDerivative {
   const BodyModel* body_;
   std::vector<uint32_t> columns_;  // [D]
   size_t stride_ = 0;
-  std::vector<uint32_t> vertex_blocks_;                  // [V]
+  std::vector<int32_t> vertex_blocks_;                  // [V]
   std::vector<uint32_t> entry_start_;                    // [V + 1]
   std::vector<Entry> entries_;                           // a vertex and a joint that moves it
   std::vector<MovedBy> moved_by_;                        // every joint with every DOF above it
-  Eigen::Vector3f origin_;                               // near the body, so that moments about it stay exact
+  Eigen::Vector4f origin_;                               // and 0; near the body, so that moments about it stay exact
   std::vector<Eigen::Matrix4f> origin_from_rest_;        // [J]
   std::vector<Eigen::Vector<float, 6>> turn_and_shift_;  // [D]
   AlignedFloats motion_;                                 // [J, 6, stride] turns x y z, shifts x y z; zero for other DOF
   std::vector<Part> parts_;                              // of the points, one after another
   std::vector<uint32_t> part_end_;                       // [P]
-  std::vector<uint32_t> point_blocks_;                   // [P]
+  std::vector<int32_t> point_blocks_;                   // [P]
   std::vector<Eigen::Vector3f> positions_;               // [P]
 };
 

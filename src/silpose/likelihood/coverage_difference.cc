@@ -64,9 +64,9 @@ std::span<const int32_t> CoverageDifference::number_cells() {
     const auto x = static_cast<size_t>(end_cell_x_[i]);
     holds_end_[static_cast<size_t>(end_cell_y_[i]) * words_ + x / 64] |= uint64_t{1} << (x % 64);
   }
-  if (end_x_.size() < num_ends_) {
-    end_x_.resize(num_ends_);
-    end_y_.resize(num_ends_);
+  if (end_x_.size() < num_ends_ + kMargin) {
+    end_x_.resize(num_ends_ + kMargin);
+    end_y_.resize(num_ends_ + kMargin);
   }
   num_end_cells_ = 0;
   for (int y = model_.y0; y < model_.y1; ++y) {
@@ -82,7 +82,7 @@ std::span<const int32_t> CoverageDifference::number_cells() {
 CoverageDifference::Jacobian CoverageDifference::jacobian(size_t stride) {
   jacobian_stride_ = stride;
   if (jacobian_.size() < num_end_cells_ * stride) jacobian_.resize(num_end_cells_ * stride);
-  if (blocks_.size() < num_end_cells_) blocks_.resize(num_end_cells_);
+  if (blocks_.size() < num_end_cells_ + kMargin) blocks_.resize(num_end_cells_ + kMargin);
   return {jacobian_.data(), blocks_.data()};
 }
 

@@ -38,7 +38,7 @@ class CoverageDifference {
   // columns where it is not zero. REQUIRES: stride a multiple of AlignedFloats::kLanes.
   struct Jacobian {
     float* rows;
-    uint32_t* blocks;
+    int32_t* blocks;
   };
   Jacobian jacobian(size_t stride);
 
@@ -82,7 +82,7 @@ class CoverageDifference {
   std::vector<int32_t> rank_, end_x_, end_y_;
   size_t num_end_cells_ = 0, jacobian_stride_ = 0;
   AlignedFloats jacobian_, half_near_, product_;
-  std::vector<uint32_t> blocks_, near_blocks_;
+  std::vector<int32_t> blocks_, near_blocks_;
   std::vector<uint64_t> bits_, near_bits_;
   std::vector<float> blurred_at_ends_;
 };

@@ -1,6 +1,5 @@
 #include "silpose/likelihood/jacobian_kernels.h"
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "silpose/base/aligned_floats.h"
@@ -12,48 +11,19 @@
 // After foreach_target.h.
 #include <hwy/highway.h>
 
-#ifndef SILPOSE_LIKELIHOOD_JACOBIAN_KERNELS_ONCE
-#define SILPOSE_LIKELIHOOD_JACOBIAN_KERNELS_ONCE
-namespace silpose {
-namespace {
-
-constexpr size_t kBlock = AlignedFloats::kLanes;
-constexpr int32_t kSide = 2 * kBlurRadius + 1;  // cells that a cell's blur reaches along a row
-constexpr uint32_t kRowBits = 6;
-constexpr size_t kAtOnce = 4;
-constexpr size_t kMostNear = static_cast<size_t>((kBlurRadius + 1) * kSide) + kAtOnce;
-
-// Cells after cell i within reach of its blur: number << kRowBits | where the middle of their row is in the weights
-// [kBlurRadius + 1, kSide]. First all are listed, without branches but where a row has many: how many a row has is not
-// predictable.
-size_t list_near(const EndCells& cells, size_t i, uint32_t* near) {
-  const int32_t rows = std::min(kBlurRadius + 1, cells.y_end - cells.y[i]);
-  size_t count = 0;
-  for (int32_t dy = 0; dy < rows; ++dy) {
-    const int32_t* const rank = cells.rank + (cells.y[i] + dy) * cells.rank_stride + cells.x[i];
-    const auto begin = static_cast<uint32_t>(rank[dy == 0 ? 1 : -kBlurRadius]);
-    const uint32_t in_row = static_cast<uint32_t>(rank[kBlurRadius + 1]) - begin;
-    const auto of_row = static_cast<uint32_t>(dy * kSide + kBlurRadius);
-    for (uint32_t t = 0; t < kAtOnce; ++t) near[count + t] = (begin + t) << kRowBits | of_row;
-    for (uint32_t t = kAtOnce; t < in_row; ++t) near[count + t] = (begin + t) << kRowBits | of_row;
-    count += in_row;
-  }
-  return count;
-}
-
-}  // namespace
-}  // namespace silpose
-#endif
-
 HWY_BEFORE_NAMESPACE();
 namespace silpose::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Tag = hn::CappedTag<float, kBlock>;
+using Tag = hn::CappedTag<float, AlignedFloats::kLanes>;
 using Vector = hn::Vec<Tag>;
 
+constexpr size_t kBlock = AlignedFloats::kLanes;
+constexpr int32_t kSide = 2 * kBlurRadius + 1;  // cells that a cell's blur reaches along a row
+constexpr size_t kAtOnce = 4;
+
 void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, size_t stride, size_t num_cells,
-                 float* HWY_RESTRICT jacobian, uint32_t* HWY_RESTRICT blocks) {
+                 float* HWY_RESTRICT jacobian, int32_t* HWY_RESTRICT blocks) {
   const Tag d;
   const size_t lanes = hn::Lanes(d);
   for (size_t i = 0; i < num_cells; ++i) blocks[i] = 0;
@@ -64,7 +34,7 @@ void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, s
     const float* point0 = points.rows + end->points[0] * 2 * stride;
     const float* point1 = points.rows + end->points[1] * 2 * stride;
     float* row = jacobian + end->cell * stride;
-    uint32_t in_blocks = points.blocks[end->points[0]] | points.blocks[end->points[1]];
+    int32_t in_blocks = points.blocks[end->points[0]] | points.blocks[end->points[1]];
     blocks[end->cell] |= in_blocks;
     for (; in_blocks != 0; in_blocks >>= 1, row += kBlock, point0 += kBlock, point1 += kBlock) {
       if ((in_blocks & 1) == 0) continue;
@@ -80,27 +50,66 @@ void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, s
   }
 }
 
+// Cells within reach of a cell's blur: where their rows begin, and which weight they have.
+struct NearCells {
+  static constexpr size_t kMost = static_cast<size_t>((kBlurRadius + 1) * kSide) + 2 * kAtOnce;
+  int32_t row[kMost], weight[kMost];
+  size_t count = 0;
+  int32_t blocks = 0;
+};
+
+// Those of cell i and after it. First kAtOnce of a row are listed, without branches: how many a row has is not
+// predictable.
+HWY_INLINE void list_near(const EndCells& cells, size_t i, int32_t stride, NearCells& near) {
+  const hn::CappedTag<int32_t, kAtOnce> d;
+  const size_t lanes = hn::Lanes(d);
+  const int32_t x = cells.x[i], rows = HWY_MIN(kBlurRadius + 1, cells.y_end - cells.y[i]);
+  const auto lane = hn::Iota(d, 0), strides = hn::Set(d, stride);
+  auto blocks = hn::Zero(d);
+  const int32_t* rank = cells.rank + cells.y[i] * cells.rank_stride + x;
+  const int32_t* first_rank = rank + 1;
+  size_t count = 0;
+  for (int32_t dy = 0; dy < rows; ++dy) {
+    const int32_t begin = *first_rank, in_row = rank[kBlurRadius + 1] - begin;
+    const auto end = hn::Set(d, begin + in_row), middle = hn::Set(d, dy * kSide + kBlurRadius - x);
+    size_t t = 0;
+    do {
+      for (const size_t next = t + kAtOnce; t < next; t += lanes) {
+        const auto j = hn::Add(lane, hn::Set(d, begin + static_cast<int32_t>(t)));
+        const size_t from = static_cast<size_t>(begin) + t;
+        hn::StoreU(hn::Mul(j, strides), d, near.row + count + t);
+        hn::StoreU(hn::Add(hn::LoadU(d, cells.x + from), middle), d, near.weight + count + t);
+        blocks = hn::Or(blocks, hn::IfThenElseZero(hn::Lt(j, end), hn::LoadU(d, cells.blocks + from)));
+      }
+    } while (t < static_cast<size_t>(in_row));
+    count += static_cast<size_t>(in_row);
+    rank += cells.rank_stride;
+    first_rank = rank - kBlurRadius;
+  }
+  near.count = count;
+  HWY_ALIGN int32_t of_lane[kAtOnce] = {};
+  hn::Store(blocks, d, of_lane);
+  near.blocks = of_lane[0] | of_lane[1] | of_lane[2] | of_lane[3] | cells.blocks[i];
+}
+
 // kVectors registers of every row, from column `first` on.
 template <size_t kVectors>
 void add_near_columns(const EndCells& cells, const float* weights, const float* HWY_RESTRICT jacobian, size_t stride,
-                      size_t first, float* HWY_RESTRICT half_near, uint32_t* HWY_RESTRICT near_blocks) {
+                      size_t first, float* HWY_RESTRICT half_near, int32_t* HWY_RESTRICT near_blocks) {
   const Tag d;
   const size_t lanes = hn::Lanes(d);
-  uint32_t near[kMostNear];
+  NearCells near;
   for (size_t i = 0; i < cells.count; ++i) {
+    list_near(cells, i, static_cast<int32_t>(stride), near);
+    near_blocks[i] = near.blocks;
     const float* row = jacobian + i * stride + first;
     const auto half = hn::Set(d, 0.5f * weights[kBlurRadius]);
     auto a = hn::Mul(half, hn::Load(d, row)), b = a, c = a;
     if constexpr (kVectors > 1) b = hn::Mul(half, hn::Load(d, row + lanes));
     if constexpr (kVectors > 2) c = hn::Mul(half, hn::Load(d, row + 2 * lanes));
-    const size_t num_near = list_near(cells, i, near);
-    uint32_t blocks = cells.blocks[i];
-    for (size_t n = 0; n < num_near; ++n) {
-      const uint32_t j = near[n] >> kRowBits;
-      const uint32_t of_row = near[n] & ((1u << kRowBits) - 1);
-      const auto k = hn::Set(d, weights[static_cast<int32_t>(of_row) + cells.x[j] - cells.x[i]]);
-      row = jacobian + j * stride + first;
-      blocks |= cells.blocks[j];
+    for (size_t n = 0; n < near.count; ++n) {
+      const auto k = hn::Set(d, weights[near.weight[n]]);
+      row = jacobian + near.row[n] + first;
       a = hn::MulAdd(k, hn::Load(d, row), a);
       if constexpr (kVectors > 1) b = hn::MulAdd(k, hn::Load(d, row + lanes), b);
       if constexpr (kVectors > 2) c = hn::MulAdd(k, hn::Load(d, row + 2 * lanes), c);
@@ -109,12 +118,11 @@ void add_near_columns(const EndCells& cells, const float* weights, const float* 
     hn::Store(a, d, out);
     if constexpr (kVectors > 1) hn::Store(b, d, out + lanes);
     if constexpr (kVectors > 2) hn::Store(c, d, out + 2 * lanes);
-    near_blocks[i] = blocks;
   }
 }
 
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near,
-                   uint32_t* near_blocks) {
+                   int32_t* near_blocks) {
   float weights[(kBlurRadius + 1) * kSide];
   for (int dy = 0; dy <= kBlurRadius; ++dy) {
     for (int dx = -kBlurRadius; dx <= kBlurRadius; ++dx) {
@@ -132,12 +140,12 @@ void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, 
   }
 }
 
-void find_bits(const uint32_t* HWY_RESTRICT blocks, size_t n, size_t num_blocks, uint64_t* HWY_RESTRICT bits) {
+void find_bits(const int32_t* HWY_RESTRICT blocks, size_t n, size_t num_blocks, uint64_t* HWY_RESTRICT bits) {
   for (size_t b = 0; b < num_blocks; ++b) {
     for (size_t first = 0; first < n; first += 64) {
       uint64_t word = 0;
       const size_t count = HWY_MIN(n - first, size_t{64});
-      for (size_t i = 0; i < count; ++i) word |= uint64_t{blocks[first + i] >> b & 1} << i;
+      for (size_t i = 0; i < count; ++i) word |= static_cast<uint64_t>(blocks[first + i] >> b & 1) << i;
       *bits++ = word;
     }
   }
@@ -230,16 +238,16 @@ HWY_EXPORT(weighted_sum);
 }  // namespace
 
 void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, size_t stride, size_t num_cells,
-                 float* jacobian, uint32_t* blocks) {
+                 float* jacobian, int32_t* blocks) {
   HWY_DYNAMIC_DISPATCH(add_up_ends)(ends, num_ends, points, stride, num_cells, jacobian, blocks);
 }
 
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near,
-                   uint32_t* near_blocks) {
+                   int32_t* near_blocks) {
   HWY_DYNAMIC_DISPATCH(add_near_rows)(cells, jacobian, stride, half_near, near_blocks);
 }
 
-void find_bits(const uint32_t* blocks, size_t n, size_t num_blocks, uint64_t* bits) {
+void find_bits(const int32_t* blocks, size_t n, size_t num_blocks, uint64_t* bits) {
   HWY_DYNAMIC_DISPATCH(find_bits)(blocks, n, num_blocks, bits);
 }
 

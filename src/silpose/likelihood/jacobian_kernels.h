@@ -9,10 +9,10 @@
 
 namespace silpose {
 
-// Cells that hold an end, in row-major order.
+// Cells that hold an end, in row-major order; a few more of each number can be read.
 struct EndCells {
   const int32_t *x, *y;    // [n]
-  const uint32_t* blocks;  // [n] of the Jacobian's row
+  const int32_t* blocks;  // [n] of the Jacobian's row
   size_t count = 0;
   // rank[y * rank_stride + x] is how many come before cell (x, y); it can be read kBlurRadius + 1 cells to either side,
   // in rows below `y_end`.
@@ -24,7 +24,7 @@ struct EndCells {
 // How points of the surface move: two rows each (pixel x, then y), and the blocks where they are not zero.
 struct PointRows {
   const float* rows;       // [points, 2, stride]
-  const uint32_t* blocks;  // [points]
+  const int32_t* blocks;  // [points]
 };
 
 // An end of a span: what it adds to its cell's row, of the two rows of each of two points.
@@ -36,12 +36,12 @@ struct EndRow {
 
 // jacobian [cells, stride] and blocks [cells] = what the ends of each cell add up to.
 void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, size_t stride, size_t num_cells,
-                 float* jacobian, uint32_t* blocks);
+                 float* jacobian, int32_t* blocks);
 
 // half_near [n, stride] = for each row i of `jacobian` [n, stride], K_ii / 2 J_i + sum over j > i of K_ij J_j, so that
 // J' K J = M + M' with M = J' half_near. near_blocks [n]: where it is not zero.
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near,
-                   uint32_t* near_blocks);
+                   int32_t* near_blocks);
 
 // A matrix [n, stride], and for each of its blocks which rows are not zero there: a bit a row, [blocks, words].
 struct SparseRows {
@@ -50,7 +50,7 @@ struct SparseRows {
 };
 
 // Sets the bits of rows [n] from their blocks.
-void find_bits(const uint32_t* blocks, size_t n, size_t num_blocks, uint64_t* bits);
+void find_bits(const int32_t* blocks, size_t n, size_t num_blocks, uint64_t* bits);
 [[nodiscard]] constexpr size_t words_of_bits(size_t n) { return (n + 63) / 64; }
 
 // product [stride, stride] = a, transposed, times b; a, b [n, stride].
