@@ -20,6 +20,7 @@ using Vector = hn::Vec<Tag>;
 
 constexpr size_t kBlock = AlignedFloats::kLanes;
 constexpr int32_t kSide = 2 * kBlurRadius + 1;  // cells that a cell's blur reaches along a row
+constexpr int32_t kNoWeight = (kBlurRadius + 1) * kSide;
 constexpr size_t kAtOnce = 4;
 
 void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, size_t stride, size_t num_cells,
@@ -107,13 +108,23 @@ void add_near_columns(const EndCells& cells, const float* weights, const float* 
     auto a = hn::Mul(half, hn::Load(d, row)), b = a, c = a;
     if constexpr (kVectors > 1) b = hn::Mul(half, hn::Load(d, row + lanes));
     if constexpr (kVectors > 2) c = hn::Mul(half, hn::Load(d, row + 2 * lanes));
-    for (size_t n = 0; n < near.count; ++n) {
-      const auto k = hn::Set(d, weights[near.weight[n]]);
+    auto a1 = hn::Zero(d), b1 = a1, c1 = a1;  // two sums each: they need not wait for each other
+    near.row[near.count] = near.row[0];
+    near.weight[near.count] = kNoWeight;
+    for (size_t n = 0; n < near.count; n += 2) {
+      const auto k = hn::Set(d, weights[near.weight[n]]), k1 = hn::Set(d, weights[near.weight[n + 1]]);
       row = jacobian + near.row[n] + first;
+      const float* const row1 = jacobian + near.row[n + 1] + first;
       a = hn::MulAdd(k, hn::Load(d, row), a);
+      a1 = hn::MulAdd(k1, hn::Load(d, row1), a1);
       if constexpr (kVectors > 1) b = hn::MulAdd(k, hn::Load(d, row + lanes), b);
+      if constexpr (kVectors > 1) b1 = hn::MulAdd(k1, hn::Load(d, row1 + lanes), b1);
       if constexpr (kVectors > 2) c = hn::MulAdd(k, hn::Load(d, row + 2 * lanes), c);
+      if constexpr (kVectors > 2) c1 = hn::MulAdd(k1, hn::Load(d, row1 + 2 * lanes), c1);
     }
+    a = hn::Add(a, a1);
+    b = hn::Add(b, b1);
+    c = hn::Add(c, c1);
     float* const out = half_near + i * stride + first;
     hn::Store(a, d, out);
     if constexpr (kVectors > 1) hn::Store(b, d, out + lanes);
@@ -123,7 +134,7 @@ void add_near_columns(const EndCells& cells, const float* weights, const float* 
 
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near,
                    int32_t* near_blocks) {
-  float weights[(kBlurRadius + 1) * kSide];
+  float weights[kNoWeight + 1] = {};
   for (int dy = 0; dy <= kBlurRadius; ++dy) {
     for (int dx = -kBlurRadius; dx <= kBlurRadius; ++dx) {
       weights[dy * kSide + dx + kBlurRadius] =
