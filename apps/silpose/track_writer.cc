@@ -81,16 +81,22 @@ Result<std::vector<Observation>> TrackWriter::read_masks(int64_t frame_idx, std:
 
 Result<void> TrackWriter::add_picture(ByteImage picture, int64_t time_ns, std::span<const double> pose) {
   const PinholeCamera& camera = cameras_[0];
+  Mask subject;
+  if (!pose.empty()) {
+    if (!renderer_) renderer_.emplace(body_, camera);
+    subject = renderer_->silhouette(pose);
+  }
   if (draws_floor_) {
-    Mask subject;
     if (!pose.empty()) {
-      subject = render_silhouette(*body_, camera, pose);
       const Eigen::Vector3d root = landmark_positions(*body_, pose)[0];
       floor_middle_ = {root.x(), root.z()};
     }
     draw_floor(picture, camera, floor_middle_, subject);
   }
-  if (!pose.empty()) draw_overlay(picture, *body_, camera, pose);
+  if (!pose.empty()) {
+    draw_outline(picture, subject);
+    draw_bones(picture, *body_, camera, pose);
+  }
   if (draws_floor_ && !pose.empty()) draw_footprints(picture, *body_, camera, pose);
   if (!overlay_) {
     Result<VideoWriter> created = create_video(directory_ / "overlay.mp4", picture.width(), picture.height(), fps_);
@@ -102,6 +108,7 @@ Result<void> TrackWriter::add_picture(ByteImage picture, int64_t time_ns, std::s
 
 void TrackWriter::set_fitted_body(std::shared_ptr<const BodyModel> body) {
   body_ = std::move(body);
+  renderer_.reset();
   is_fitted_ = true;
 }
 

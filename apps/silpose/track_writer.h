@@ -16,6 +16,7 @@
 #include "silpose/geometry/camera.h"
 #include "silpose/image/video.h"
 #include "silpose/recording/track_recorder.h"
+#include "silpose/render/silhouette.h"
 #include "silpose/report/mask_strip.h"
 #include "silpose/shape/observation.h"
 
@@ -78,6 +79,7 @@ class TrackWriter {
   bool draws_floor_, is_fitted_ = false, keeps_confidence_ = false;
   Eigen::Vector2d floor_middle_ = Eigen::Vector2d::Zero();  // x, z: below the subject's root, where it was seen last
   std::vector<MaskStrip> strips_;                           // [C]
+  std::optional<BatchRenderer> renderer_;  // of body_, as the first camera sees it; made when first needed
   std::optional<VideoWriter> overlay_;
 };
 

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <numbers>
 #include <utility>
 
 #include "silpose/base/check.h"
+#include "silpose/base/scratch_pool.h"
 #include "silpose/likelihood/coverage_difference.h"
 #include "silpose/likelihood/end_motion.h"
 #include "silpose/render/outline_spans.h"
@@ -40,8 +40,7 @@ struct CoverageLikelihood::Impl {
   std::vector<View> views;
   int rows_per_cell;
 
-  mutable std::mutex idle_mutex;
-  mutable std::vector<std::unique_ptr<Scratch::Impl>> idle;  // nobody works in them now
+  mutable ScratchPool<Scratch::Impl> pool;
 };
 
 struct CoverageLikelihood::Scratch::Impl {
@@ -55,21 +54,11 @@ struct CoverageLikelihood::Scratch::Impl {
   CoverageDifference difference;
 };
 
-CoverageLikelihood::Scratch::Scratch(const CoverageLikelihood& likelihood) : owner_(likelihood.impl_) {
-  {
-    const std::scoped_lock lock(owner_->idle_mutex);
-    if (!owner_->idle.empty()) {
-      impl_ = std::move(owner_->idle.back());
-      owner_->idle.pop_back();
-    }
-  }
-  if (!impl_) impl_ = std::make_unique<Impl>(*owner_);
-}
+CoverageLikelihood::Scratch::Scratch(const CoverageLikelihood& likelihood)
+    : owner_(likelihood.impl_), impl_(owner_->pool.take(*owner_)) {}
 CoverageLikelihood::Scratch::Scratch(Scratch&&) noexcept = default;
 CoverageLikelihood::Scratch::~Scratch() {
-  if (!impl_) return;  // moved from
-  const std::scoped_lock lock(owner_->idle_mutex);
-  owner_->idle.push_back(std::move(impl_));
+  if (impl_) owner_->pool.give_back(std::move(impl_));  // not moved from
 }
 
 CoverageLikelihood::CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras,

@@ -1,9 +1,11 @@
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/base/scratch_pool.h"
 #include "silpose/render/coverage_count.h"
 #include "silpose/render/outline_scan.h"
 #include "silpose/render/pose_projector.h"
@@ -27,11 +29,9 @@ struct BatchRenderer::Impl {
       : projector(std::move(body), camera), topology(projector.faces()) {}
 
   // project(pose, scratch) leaves a pose's points on the grid of the window that it returns, or nothing when it is not
-  // seen; count(outline) tells what is wanted of the outline scanned there.
-  template <class Project, class Count>
-  void counts(const BatchView& poses, std::span<OutlineRenderer::Counts> out, const Project& project,
-              const Count& count) const {
-    check(out.size() == poses.num_poses, "BatchRenderer: {} poses, room for {}", poses.num_poses, out.size());
+  // seen; take(n, outline) takes what is wanted of the outline scanned there.
+  template <class Project, class Take>
+  void for_each_seen(const BatchView& poses, const Project& project, const Take& take) const {
     const int num_dofs = projector.body().skeleton.num_dofs();
     check(poses.num_dofs == static_cast<size_t>(num_dofs), "BatchRenderer: poses of {} DOF for {}", poses.num_dofs,
           num_dofs);
@@ -39,15 +39,22 @@ struct BatchRenderer::Impl {
     parallel_for(poses.num_poses, kGrain, [&](size_t begin, size_t end) {
       std::unique_ptr<PoseScratch> scratch = pool.take(topology);
       for (size_t n = begin; n < end; ++n) {
-        out[n] = {};
         const std::span pose(poses.data + n * poses.stride, poses.num_dofs);
         if (const std::optional<Window> window = project(pose, *scratch)) {
           scan(*window, *scratch);
-          out[n] = count(scratch->outline);
+          take(n, scratch->outline);
         }
       }
       pool.give_back(std::move(scratch));
     });
+  }
+
+  template <class Project, class Count>
+  void counts(const BatchView& poses, std::span<OutlineRenderer::Counts> out, const Project& project,
+              const Count& count) const {
+    check(out.size() == poses.num_poses, "BatchRenderer: {} poses, room for {}", poses.num_poses, out.size());
+    std::ranges::fill(out, OutlineRenderer::Counts{});
+    for_each_seen(poses, project, [&](size_t n, const OutlineScan& outline) { out[n] = count(outline); });
   }
 
   std::optional<Window> project_to(const Window& window, std::span<const double> pose, PoseScratch& scratch) const {
@@ -131,6 +138,21 @@ void BatchRenderer::coverages_cropped(const BatchView& poses, const ByteImage& o
   impl_->counts(
       poses, out, [&](auto pose, auto& scratch) { return impl_->project_cropped(width, height, true, pose, scratch); },
       [&](const OutlineScan& outline) { return columns.count(outline.bits()); });
+}
+
+void BatchRenderer::silhouettes(const BatchView& poses, const Window& window, std::span<Mask> out) const {
+  check(out.size() == poses.num_poses, "BatchRenderer: {} poses, room for {}", poses.num_poses, out.size());
+  std::ranges::fill(out, Mask(window.width, window.height));
+  impl_->for_each_seen(
+      poses, [&](auto pose, auto& scratch) { return impl_->project_to(window, pose, scratch); },
+      [&](size_t n, const OutlineScan& outline) { outline.draw(out[n]); });
+}
+
+Mask BatchRenderer::silhouette(std::span<const double> pose) const {
+  Mask mask;
+  const Window picture{.width = camera().width, .height = camera().height};
+  silhouettes({pose.data(), 1, pose.size(), pose.size()}, picture, {&mask, 1});
+  return mask;
 }
 
 const BodyModel& BatchRenderer::body() const { return impl_->projector.body(); }

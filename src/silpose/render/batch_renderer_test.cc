@@ -147,6 +147,24 @@ TEST_F(BatchRendererTest, UnseenAndBrokenPosesCountNothing) {
   EXPECT_EQ(counts[0].model + counts[1].model, 0);
 }
 
+TEST_F(BatchRendererTest, SilhouettesAreWhatIsCounted) {
+  const Window window{.x0 = 60, .y0 = 20, .scale_x = 0.7, .scale_y = 0.6, .width = 130, .height = 120};
+  const BatchRenderer renderer(body_, camera_);
+  std::vector<Mask> masks(200);
+  renderer.silhouettes(view(poses_), window, masks);
+  Mask full(window.width, window.height);
+  for (int y = 0; y < full.height(); ++y) {
+    for (int x = 0; x < full.width(); ++x) full.set(x, y);
+  }
+  std::vector<Counts> counts(200);
+  renderer.counts(view(poses_), window, full, counts);
+  for (size_t n = 0; n < counts.size(); ++n) EXPECT_EQ(masks[n].count(), counts[n].model) << n;
+  EXPECT_GT(intersection_over_union(renderer.silhouette(pose(3)), render_silhouette(*body_, camera_, pose(3))), 0.999);
+  std::vector<double> broken(pose(3).begin(), pose(3).end());
+  broken[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(renderer.silhouette(broken).count(), 0);
+}
+
 TEST_F(BatchRendererTest, RefusesOtherSizes) {
   const BatchRenderer renderer(body_, camera_);
   std::vector<Counts> counts(200), few(3);

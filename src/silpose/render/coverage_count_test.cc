@@ -9,9 +9,9 @@
 
 #include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
+#include "silpose/base/simd_targets.h"
 #include "silpose/body/test_body.h"
 #include "silpose/render/projected_mesh.h"
-#include "silpose/render/simd_targets.h"
 #include "silpose/shape/normalised_silhouette.h"
 
 namespace silpose {

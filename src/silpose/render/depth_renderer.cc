@@ -7,6 +7,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/base/scratch_pool.h"
 #include "silpose/render/pose_projector.h"
 #include "silpose/render/triangle_fill.h"
 

@@ -5,7 +5,6 @@
 
 #include "silpose/base/check.h"
 #include "silpose/render/canvas.h"
-#include "silpose/render/silhouette.h"
 
 namespace silpose {
 void draw_outline(ByteImage& picture, const Mask& mask, Colour colour) {
@@ -43,12 +42,6 @@ void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& 
                  kFractionBits);
     }
   }
-}
-
-void draw_overlay(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera,
-                  std::span<const double> pose) {
-  draw_outline(picture, render_silhouette(body, camera, pose));
-  draw_bones(picture, body, camera, pose);
 }
 
 }  // namespace silpose

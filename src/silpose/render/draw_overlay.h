@@ -23,7 +23,4 @@ void draw_outline(ByteImage& picture, const Mask& mask, Colour colour = {80, 255
 // Bones with an end behind the camera are left out.
 void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose);
 
-// Both: the outline of the body's silhouette and its bones. REQUIRES: picture of the camera's size.
-void draw_overlay(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose);
-
 }  // namespace silpose

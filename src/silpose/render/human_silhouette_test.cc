@@ -3,8 +3,8 @@
 #include <filesystem>
 
 #include "silpose/base/rng.h"
-#include "silpose/render/silhouette.h"
 #include "silpose/base/simd_targets.h"
+#include "silpose/render/silhouette.h"
 
 namespace silpose {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "silpose/base/rng.h"
-#include "silpose/render/simd_targets.h"
+#include "silpose/base/simd_targets.h"
 
 namespace silpose {
 namespace {

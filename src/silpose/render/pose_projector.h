@@ -4,10 +4,8 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "silpose/render/projected_mesh.h"
@@ -58,33 +56,6 @@ class PoseProjector {
   std::shared_ptr<const BodyModel> body_;
   PinholeCamera camera_;
   ProjectedSkin skin_;
-};
-
-// Keeps what threads work in from one range of poses to the next, so that nothing is allocated once every thread has
-// had its own.
-template <class Scratch>
-class ScratchPool {
- public:
-  template <class... Args>
-  [[nodiscard]] std::unique_ptr<Scratch> take(const Args&... args) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (!free_.empty()) {
-        std::unique_ptr<Scratch> scratch = std::move(free_.back());
-        free_.pop_back();
-        return scratch;
-      }
-    }
-    return std::make_unique<Scratch>(args...);
-  }
-  void give_back(std::unique_ptr<Scratch> scratch) {
-    const std::lock_guard lock(mutex_);
-    free_.push_back(std::move(scratch));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Scratch>> free_;
 };
 
 }  // namespace silpose

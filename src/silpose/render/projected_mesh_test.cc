@@ -9,10 +9,10 @@
 #include <numeric>
 
 #include "silpose/base/rng.h"
+#include "silpose/base/simd_targets.h"
 #include "silpose/body/test_body.h"
 #include "silpose/render/shaded.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/base/simd_targets.h"
 
 namespace silpose {
 namespace {

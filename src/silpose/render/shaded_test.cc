@@ -151,7 +151,8 @@ TEST_F(ShadedTest, OverlayFollowsOutlineAndBones) {
   const auto middle = camera_.project((landmarks[1] + landmarks[2]) / 2);
   EXPECT_GT(brightness(bones, static_cast<int>(middle->x()), static_cast<int>(middle->y())), 120);
   ByteImage both(160, 120, 3);
-  draw_overlay(both, body_, camera_, pose_);
+  draw_outline(both, render_silhouette(body_, camera_, pose_));
+  draw_bones(both, body_, camera_, pose_);
   EXPECT_NE(both, outline);
   EXPECT_NE(both, bones);
 }

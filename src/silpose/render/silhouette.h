@@ -108,6 +108,11 @@ class BatchRenderer {
                       std::span<OutlineRenderer::Counts> out) const;
   void coverages_cropped(const BatchView& poses, const ByteImage& observed_cropped,
                          std::span<OutlineRenderer::Counts> out) const;
+  // The silhouettes themselves, each of the window's size: [N]. A pose that is not seen has none of its pixels set.
+  void silhouettes(const BatchView& poses, const Window& window, std::span<Mask> out) const;
+  // One pose [D] over the whole image.
+  [[nodiscard]] Mask silhouette(std::span<const double> pose) const;
+
   [[nodiscard]] const BodyModel& body() const;
   [[nodiscard]] const PinholeCamera& camera() const;
 

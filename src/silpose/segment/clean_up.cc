@@ -15,11 +15,26 @@ constexpr double kLeastCovered = 0.3;  // of an expected silhouette
 // What belongs to a blob though it is apart from it: gap, of the blob's height; sizes, of its area.
 constexpr double kPartGap = 0.04, kLeastPart = 0.005, kLargestPart = 0.3;
 
+cv::Mat disc(int radius) {
+  cv::Mat element(2 * radius + 1, 2 * radius + 1, CV_8U);
+  for (int y = -radius; y <= radius; ++y) {
+    for (int x = -radius; x <= radius; ++x) {
+      element.at<uint8_t>(y + radius, x + radius) = x * x + y * y <= radius * radius ? 1 : 0;
+    }
+  }
+  return element;
+}
+
 // Where a set pixel lies within `radius`.
 cv::Mat within(const cv::Mat& mat, int radius) {
-  cv::Mat distance;
-  cv::distanceTransform(mat == 0, distance, cv::DIST_L2, cv::DIST_MASK_PRECISE);
-  return distance <= radius;
+  constexpr int kSmall = 2;  // up to which a disc is quicker than distances
+  cv::Mat result;
+  if (radius <= kSmall) {
+    cv::dilate(mat, result, disc(radius));
+    return result != 0;
+  }
+  cv::distanceTransform(mat == 0, result, cv::DIST_L2, cv::DIST_MASK_PRECISE);
+  return result <= radius;
 }
 
 // Grown and shrunk again: gaps of up to twice the radius are closed. The picture's border is no edge.
@@ -75,16 +90,6 @@ std::vector<bool> parts_near(const cv::Mat& mat, const cv::Mat& labels, const st
     }
   }
   return is_kept;
-}
-
-cv::Mat disc(int radius) {
-  cv::Mat element(2 * radius + 1, 2 * radius + 1, CV_8U);
-  for (int y = -radius; y <= radius; ++y) {
-    for (int x = -radius; x <= radius; ++x) {
-      element.at<uint8_t>(y + radius, x + radius) = x * x + y * y <= radius * radius ? 1 : 0;
-    }
-  }
-  return element;
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "silpose/render/silhouette.h"
 
 namespace silpose {
 namespace {
@@ -34,11 +33,11 @@ bool has_a_say(const Observation& observation) {
 
 bool any_has_a_say(std::span<const Observation> observations) { return std::ranges::any_of(observations, has_a_say); }
 
-double visual_accuracy(const BodyModel& body, std::span<const PinholeCamera> cameras,
-                       std::span<const Observation> observations, std::span<const double> pose) {
+double visual_accuracy(std::span<const BatchRenderer> renderers, std::span<const Observation> observations,
+                       std::span<const double> pose) {
   for (size_t c = 0; c < observations.size(); ++c) {
     if (observations[c].trust.nothing_found) continue;
-    return intersection_over_union(render_silhouette(body, cameras[c], pose), observations[c].mask);
+    return intersection_over_union(renderers[c].silhouette(pose), observations[c].mask);
   }
   return 0;
 }

@@ -6,6 +6,7 @@
 
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
+#include "silpose/render/silhouette.h"
 #include "silpose/segment/segmenter.h"
 #include "silpose/shape/observation.h"
 
@@ -22,8 +23,8 @@ bool has_a_say(const Observation& observation);
 bool any_has_a_say(std::span<const Observation> observations);
 
 // Intersection over union of a pose's silhouette and the mask of the first camera that found something; 0 without one.
-// Shapes: one observation a camera.
-double visual_accuracy(const BodyModel& body, std::span<const PinholeCamera> cameras,
-                       std::span<const Observation> observations, std::span<const double> pose);
+// Shapes: a renderer of the body and an observation a camera.
+double visual_accuracy(std::span<const BatchRenderer> renderers, std::span<const Observation> observations,
+                       std::span<const double> pose);
 
 }  // namespace silpose

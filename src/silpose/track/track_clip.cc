@@ -300,6 +300,8 @@ class ClipTracker {
   std::vector<StepReport> reports(const SmoothedPoses& smoothed) const {
     const BodyModel& body = *options_.body;
     std::vector<StepReport> reports = waiting(0, clip_.size());
+    std::vector<BatchRenderer> seen_by;
+    for (const PinholeCamera& camera : options_.cameras) seen_by.emplace_back(options_.body, camera);
     const BodyError body_error(level_of_detail(body, kBodyErrorVertices), options_.cameras, options_.size_deviation);
     parallel_for(smoothed.poses.size(), 4, [&](size_t begin, size_t end) {
       CoverageLikelihood::Scratch scratch(*likelihood_), of_stretched(body_error.likelihood());
@@ -325,7 +327,7 @@ class ClipTracker {
                        : seen_[first_ + i] ? StepReport::State::kTracked
                                            : StepReport::State::kCoasted;
         if (!seen_[first_ + i]) continue;
-        report.visual_accuracy = visual_accuracy(body, options_.cameras, clip_[first_ + i].observations, report.pose);
+        report.visual_accuracy = visual_accuracy(seen_by, clip_[first_ + i].observations, report.pose);
       }
     });
     reports[first_].seconds.start = start_seconds_;

@@ -47,6 +47,11 @@ struct Tracker::Impl {
         likelihoods.renderers.push_back(std::make_shared<const BatchRenderer>(fine, camera));
       }
     }
+    const auto coarse = level_of_detail(options.body, kRankingVertices);
+    for (const PinholeCamera& camera : options.cameras) {
+      seen_by.emplace_back(options.body, camera);
+      expected_by.emplace_back(coarse, camera);
+    }
     filter = make_pose_filter(options, likelihoods);
     for_start = start_proposal(options);
     if (!options.proposal) options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton);
@@ -87,7 +92,7 @@ struct Tracker::Impl {
     report.spread = std::move(spread.dofs);
     report.landmark_spread = std::move(spread.landmarks);
     if (report.state != StepReport::State::kCoasted) {
-      report.visual_accuracy = visual_accuracy(*options.body, options.cameras, observations, report.pose);
+      report.visual_accuracy = visual_accuracy(seen_by, observations, report.pose);
     }
     last_pose = report.pose;
   }
@@ -118,6 +123,7 @@ struct Tracker::Impl {
 
   TrackerOptions options;
   Likelihoods likelihoods;
+  std::vector<BatchRenderer> seen_by, expected_by;  // [C] the whole mesh, and a coarse one
   std::unique_ptr<PoseFilter> filter;
   std::shared_ptr<const Proposal> for_start;
   std::vector<std::unique_ptr<Segmenter>> segmenters;  // online, one a camera; made when first needed
@@ -200,9 +206,8 @@ std::vector<Mask> Tracker::expected(double dt_s) const {
     for (size_t d = 0; d < pose.size(); ++d) pose[d] += dt_s * velocity[static_cast<Eigen::Index>(d)];
     t.options.body->skeleton.clamp(pose);
   }
-  const BodyModel& body = t.likelihoods.coarse ? t.likelihoods.coarse->body() : t.likelihoods.renderers[0]->body();
   std::vector<Mask> silhouettes;
-  for (const PinholeCamera& camera : t.options.cameras) silhouettes.push_back(render_silhouette(body, camera, pose));
+  for (const BatchRenderer& renderer : t.expected_by) silhouettes.push_back(renderer.silhouette(pose));
   return silhouettes;
 }
 
