@@ -20,6 +20,12 @@ int64_t sum_of(const ByteImage& covered) {
   return std::accumulate(covered.pixels().begin(), covered.pixels().end(), int64_t{0});
 }
 
+// So that the samples of a whole picture fit into a raster.
+double largest_scale(const PinholeCamera& camera) {
+  constexpr double kMostSamples = 1 << 29;
+  return std::sqrt(kMostSamples / kFullCoverage / camera.width / camera.height);
+}
+
 }  // namespace
 
 void LikelihoodOptions::check() const {
@@ -54,7 +60,9 @@ Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations
       } else {
         // Never enlarged: there is nothing to see between the pixels of a small subject.
         const double longer_side = std::max({observation.box.width, observation.box.height, 1});
-        view.window = window_of_image(camera.width, camera.height, std::min(1.0, options_.resolution / longer_side));
+        double scale = std::min(1.0, options_.resolution / longer_side);
+        if (options_.metric == Metric::kCoverage) scale = std::min(scale, largest_scale(camera));
+        view.window = window_of_image(camera.width, camera.height, scale);
       }
       if (options_.metric == Metric::kCoverage) {
         view.covered = resample_coverage(observation.mask, view.window, kFullCoverage);

@@ -23,7 +23,8 @@ enum class Comparison {
 // What differs.
 enum class Metric {
   kPixelCount,  // pixels: set in one of both only
-  kCoverage,    // parts of pixels: |covered by one - covered by the other|, which motion of a tenth of a pixel changes
+  kCoverage,    // parts of pixels: |covered by one - covered by the other|, which motion of a tenth of a pixel changes.
+                // A raster of a quarter of the resolution does as well.
 };
 
 struct LikelihoodOptions {

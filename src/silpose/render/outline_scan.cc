@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <new>
 
 #include "silpose/base/check.h"
 
@@ -218,8 +219,10 @@ void OutlineScan::resize(int width, int height) {
   check(width >= 0 && height >= 0 && int64_t{width} * height < (int64_t{1} << 30), "OutlineScan: a raster of {}x{}",
         width, height);
   const auto words = static_cast<size_t>((width + kWordBits - 1) / kWordBits);
-  changes_.assign(words * static_cast<size_t>(height + 1) * kWordBits, 0);
-  inside_.resize(words * static_cast<size_t>(height));
+  const size_t num_changes = std::max<size_t>(1, words * static_cast<size_t>(height + 1) * kWordBits);
+  changes_.reset(static_cast<int8_t*>(std::calloc(num_changes, 1)));
+  if (!changes_) throw std::bad_alloc();
+  inside_ = std::make_unique_for_overwrite<uint64_t[]>(words * static_cast<size_t>(height));
   width_ = width;
   height_ = height;
 }
@@ -228,7 +231,7 @@ void OutlineScan::scan(std::span<const GridPoint> points, bool some_unseen, int 
                        std::span<const Face> cut_faces) {
   resize(width, height);
   edges_.find(points, some_unseen, cut_faces);
-  ChangeRaster raster{.changes = changes_.data(),
+  ChangeRaster raster{.changes = changes_.get(),
                       .width = width,
                       .height = height,
                       .row_begin = height,
@@ -244,14 +247,14 @@ void OutlineScan::scan(std::span<const GridPoint> points, bool some_unseen, int 
   for (int w = word_begin_; w < word_end_; ++w) {
     const auto first_row = static_cast<size_t>(w) * static_cast<size_t>(height + 1) + static_cast<size_t>(row_begin_);
     HWY_DYNAMIC_DISPATCH(sum_columns)
-    (changes_.data() + first_row * kWordBits, static_cast<size_t>(row_end_ - row_begin_),
-     inside_.data() + static_cast<size_t>(w) * static_cast<size_t>(height) + static_cast<size_t>(row_begin_));
+    (changes_.get() + first_row * kWordBits, static_cast<size_t>(row_end_ - row_begin_),
+     inside_.get() + static_cast<size_t>(w) * static_cast<size_t>(height) + static_cast<size_t>(row_begin_));
   }
 }
 
 void OutlineScan::draw(Mask& mask) const {
   for (int w = word_begin_; w < word_end_; ++w) {
-    const uint64_t* const column = inside_.data() + static_cast<size_t>(w) * static_cast<size_t>(height_);
+    const uint64_t* const column = inside_.get() + static_cast<size_t>(w) * static_cast<size_t>(height_);
     for (int y = row_begin_; y < row_end_; ++y) mask.row(y)[static_cast<size_t>(w)] = column[y];
   }
 }
@@ -266,7 +269,7 @@ OutlineRenderer::Counts OutlineScan::count(const Mask& observed) const {
 std::optional<PixelBounds> OutlineScan::bounds() const {
   int x0 = width_, x1 = 0, y0 = height_, y1 = 0;
   for (int w = word_begin_; w < word_end_; ++w) {
-    const uint64_t* const column = inside_.data() + static_cast<size_t>(w) * static_cast<size_t>(height_);
+    const uint64_t* const column = inside_.get() + static_cast<size_t>(w) * static_cast<size_t>(height_);
     uint64_t any = 0;
     for (int y = row_begin_; y < row_end_; ++y) {
       if (column[y] == 0) continue;

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,7 +42,7 @@ class OutlineScan {
     int row_begin, row_end, word_begin, word_end;
   };
   [[nodiscard]] Bits bits() const {
-    return {inside_.data(), width_, height_, row_begin_, row_end_, word_begin_, word_end_};
+    return {inside_.get(), width_, height_, row_begin_, row_end_, word_begin_, word_end_};
   }
 
  private:
@@ -50,9 +52,14 @@ class OutlineScan {
   int width_ = 0, height_ = 0;
   // Where anything is inside, at most: rows, and words of 64 columns.
   int row_begin_ = 0, row_end_ = 0, word_begin_ = 0, word_end_ = 0;
-  std::vector<int32_t> active_;   // [7, edges] scratch: edges that still have columns to cross
-  std::vector<int8_t> changes_;   // [words, height + 1, 64] of the winding number; 0 between scans. Last row: unread
-  std::vector<uint64_t> inside_;  // [words, height] bits; valid within the rows and words above
+  std::vector<int32_t> active_;  // [7, edges] scratch: edges that still have columns to cross
+  // Large rasters take memory only where something was drawn: pages come zeroed from the system, when they are touched.
+  struct Free {
+    void operator()(void* memory) const { std::free(memory); }
+  };
+  std::unique_ptr<int8_t[], Free> changes_;  // [words, height + 1, 64] of the winding number; 0 between scans. Last
+                                             // row: unread
+  std::unique_ptr<uint64_t[]> inside_;       // [words, height] bits; valid within the rows and words above
 };
 
 }  // namespace silpose
