@@ -21,9 +21,11 @@ class DepthScratch {
   std::vector<float> inverse_depth;  // [points]
   std::vector<float> nearness;       // [height, width] 1 / depth; 0 where there is nothing
   int width = 0, height = 0;
-  struct {
+  struct Box {
     int x_begin, y_begin, x_end, y_end;
-  } drawn = {};
+  };
+  Box drawn = {};
+  std::vector<uint32_t> candidates;  // [faces] scratch
 
   void start(const Window& window) {
     if (width != window.width || height != window.height) {
@@ -37,15 +39,36 @@ class DepthScratch {
   }
   [[nodiscard]] float* row(int y) { return nearness.data() + static_cast<size_t>(y) * static_cast<size_t>(width); }
 
-  // The pixels of fill_triangle(), for triangles that are smaller than pixels most of the time: most hold no centre.
+  // Triangles are smaller than pixels most of the time, and most hold no pixel's centre: these are sorted out first,
+  // without branches, which could not be predicted.
+  void draw(std::span<const Face> faces) {
+    if (candidates.size() < faces.size()) candidates.resize(faces.size());
+    size_t num_candidates = 0;
+    for (uint32_t f = 0; f < faces.size(); ++f) {
+      const Box box = box_of(faces[f]);
+      candidates[num_candidates] = f;
+      num_candidates += static_cast<size_t>((box.x_begin < box.x_end) & (box.y_begin < box.y_end));
+    }
+    for (size_t i = 0; i < num_candidates; ++i) draw(faces[candidates[i]]);
+  }
+
+ private:
+  // Whose centres a triangle may hold: those on its right and bottom are outside.
+  [[nodiscard]] Box box_of(const Face& face) const {
+    const std::span<const GridPoint> points = projected.points();
+    const GridPoint a = points[face[0]], b = points[face[1]], c = points[face[2]];
+    return {std::max(0, first_centre_from(std::min(a.x, std::min(b.x, c.x)))),
+            std::max(0, first_centre_from(std::min(a.y, std::min(b.y, c.y)))),
+            std::min(width, first_centre_from(std::max(a.x, std::max(b.x, c.x)))),
+            std::min(height, first_centre_from(std::max(a.y, std::max(b.y, c.y))))};
+  }
+
+  // The pixels of fill_triangle().
   void draw(const Face& face) {
     const std::span<const GridPoint> points = projected.points();
     const GridPoint a = points[face[0]], b = points[face[1]], c = points[face[2]];
-    const int x_begin = std::max(0, first_centre_from(std::min({a.x, b.x, c.x})));
-    const int x_end = std::min(width, first_centre_from(std::max({a.x, b.x, c.x})));  // right and bottom are outside
-    const int y_begin = std::max(0, first_centre_from(std::min({a.y, b.y, c.y})));
-    const int y_end = std::min(height, first_centre_from(std::max({a.y, b.y, c.y})));
-    if (x_begin >= x_end || y_begin >= y_end || a.unseen() || b.unseen() || c.unseen()) return;
+    if (a.unseen() || b.unseen() || c.unseen()) return;
+    const auto [x_begin, y_begin, x_end, y_end] = box_of(face);
     const int64_t area = side_of_edge(a, b, c);
     if (area == 0) return;
     const int64_t turn = area > 0 ? 1 : -1;
@@ -73,7 +96,6 @@ class DepthScratch {
              std::max(drawn.y_end, y_end)};
   }
 
- private:
   // On which side of an edge centres of pixels lie, as side_of_edge(), from one pixel to the next.
   struct Side {
     Side(GridPoint from, GridPoint to, int64_t turn, int x, int y)
@@ -107,8 +129,8 @@ struct DepthRenderer::Impl {
         if (projector.project({poses.data + n * poses.stride, poses.num_dofs}, scratch->projected)) {
           projector.round(window, scratch->projected);
           projector.inverse_depths(scratch->projected, scratch->inverse_depth);
-          for (const Face& face : projector.faces()) scratch->draw(face);
-          for (const Face& face : scratch->projected.cut_faces()) scratch->draw(face);
+          scratch->draw(projector.faces());
+          scratch->draw(scratch->projected.cut_faces());
         }
         take(n, *scratch);
       }
