@@ -24,7 +24,7 @@ enum class Comparison {
 enum class Metric {
   kPixelCount,  // pixels: set in one of both only
   kCoverage,    // parts of pixels: |covered by one - covered by the other|, which motion of a tenth of a pixel changes.
-                // A raster of a quarter of the resolution does as well.
+                // On a quarter of the resolution it still tells better where a body is.
 };
 
 struct LikelihoodOptions {
