@@ -135,7 +135,8 @@ Eigen::Matrix3Xd Skeleton::dof_axes(std::span<const double> pose, std::span<cons
     for (size_t step = step_start_[j]; step < step_start_[j + 1]; ++step) {
       const Step& s = steps_[step];
       axes.col(s.dof_idx) = rotation * dofs_[s.dof_idx].axis;
-      if (!s.is_translation && step + 1 < step_start_[j + 1]) turn(rotation, s.cardinal, s.sign, dofs_[s.dof_idx].axis, pose[s.dof_idx]);
+      const bool is_last = step + 1 == step_start_[j + 1];
+      if (!s.is_translation && !is_last) turn(rotation, s.cardinal, s.sign, dofs_[s.dof_idx].axis, pose[s.dof_idx]);
     }
   }
   return axes;

@@ -24,9 +24,6 @@ class SkinDerivative {
   // Takes points [P], vertices of the mesh; after set_pose().
   void set_points(std::span<const uint32_t> vertices);
 
-  // Fetches what a vertex needs from memory, some time before set_points().
-  void prefetch(uint32_t vertex) const { __builtin_prefetch(&entries_[entry_start_[vertex]]); }
-
   // Of the points [P].
   [[nodiscard]] std::span<const Eigen::Vector3f> positions() const { return positions_; }
 
@@ -57,7 +54,7 @@ class SkinDerivative {
   const BodyModel* body_;
   std::vector<uint32_t> columns_;  // [D]
   size_t stride_ = 0;
-  std::vector<int32_t> vertex_blocks_;                  // [V]
+  std::vector<int32_t> vertex_blocks_;                   // [V]
   std::vector<uint32_t> entry_start_;                    // [V + 1]
   std::vector<Entry> entries_;                           // a vertex and a joint that moves it
   std::vector<MovedBy> moved_by_;                        // every joint with every DOF above it
@@ -67,7 +64,7 @@ class SkinDerivative {
   AlignedFloats motion_;                                 // [J, 6, stride] turns x y z, shifts x y z; zero for other DOF
   std::vector<Part> parts_;                              // of the points, one after another
   std::vector<uint32_t> part_end_;                       // [P]
-  std::vector<int32_t> point_blocks_;                   // [P]
+  std::vector<int32_t> point_blocks_;                    // [P]
   std::vector<Eigen::Vector3f> positions_;               // [P]
 };
 

@@ -39,9 +39,9 @@ void CoverageDifference::add_model(const SpanEnds& ends) {
   num_ends_ = ends.count;
   if (num_ends_ == 0) return;
   if (end_at_.size() < num_ends_ + kSpanSpare) {
-    for (auto* const numbers : {&end_cell_x_, &end_cell_y_, &end_at_, &number_})
-      numbers->resize(num_ends_ + kSpanSpare);
-    for (auto* const numbers : {&end_here_, &end_beyond_}) numbers->resize(num_ends_ + kSpanSpare);
+    const size_t size = num_ends_ + kSpanSpare;
+    for (auto* const numbers : {&end_cell_x_, &end_cell_y_, &end_at_, &number_}) numbers->resize(size);
+    for (auto* const numbers : {&end_here_, &end_beyond_}) numbers->resize(size);
   }
   const CellGrid grid{.picture_width = picture_width_,
                       .cells_per_pixel = 1.0f / static_cast<float>(raster_->cell),
@@ -125,9 +125,8 @@ void CoverageDifference::add_normal_equations(double weight, std::span<const uin
 
   const size_t padded = AlignedFloats::padded(static_cast<size_t>(drawn_.y1 - drawn_.y0));
   for (size_t i = 0; i < n; ++i) {
-    blurred_at_ends_[i] =
-        blurred_
-            .data()[static_cast<size_t>(end_x_[i] - drawn_.x0) * padded + static_cast<size_t>(end_y_[i] - drawn_.y0)];
+    const auto x = static_cast<size_t>(end_x_[i] - drawn_.x0), y = static_cast<size_t>(end_y_[i] - drawn_.y0);
+    blurred_at_ends_[i] = blurred_.data()[x * padded + y];
   }
   weighted_sum(jacobian_.data(), blurred_at_ends_.data(), n, stride, sum);
 

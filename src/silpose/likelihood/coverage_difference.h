@@ -67,7 +67,7 @@ class CoverageDifference {
   size_t stride_ = 0, rank_stride_ = 0;
   float picture_width_ = 0;
   int rows_per_cell_ = 1;
-  // Column by column: [width + 1, stride_], the last unread. Before finish(): what changes from the column on the left.
+  // Column by column: [width + 1, stride_], the last unread. Before finish(): how much coverage changes from the left.
   std::vector<float> difference_;
   AlignedFloats half_blurred_, blurred_;  // of the drawn box
   CellBox model_, drawn_;                 // cells that the model touches, and the observation
@@ -75,8 +75,7 @@ class CoverageDifference {
   size_t num_ends_ = 0;
   std::vector<int32_t> end_cell_x_, end_cell_y_, end_at_, number_;
   std::vector<float> end_here_, end_beyond_;
-  // Cells that hold an end: a bit each [height, words], how many come before each cell [height, rank_stride_], and
-  // they.
+  // Cells that hold an end: bits [height, words_], how many come before each cell [height, rank_stride_], a list.
   size_t words_ = 0;
   std::vector<uint64_t> holds_end_;
   std::vector<int32_t> rank_, end_x_, end_y_;

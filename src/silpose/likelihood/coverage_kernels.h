@@ -35,7 +35,7 @@ struct PlacedEnds {
   float *here, *beyond;
 };
 
-// Returns the cells that ends lie in, with the column after them. REQUIRES: ends, and kSpanSpare to spare in arrays.
+// Returns the box of cells that ends lie in. REQUIRES: an end; kSpanSpare to spare in every array.
 CellBox place_ends(const SpanEnds& ends, const CellGrid& grid, const PlacedEnds& placed);
 
 // Columns of cells, each `stride` apart. confidence: nullptr for 1 everywhere.
@@ -44,13 +44,14 @@ struct ObservedCells {
   size_t stride;
 };
 
-// difference [width, stride], where every cell holds what changes from its left: summed up, less what is observed,
-// times confidence. Up to kLanes below each column are overwritten with what is 0 when they are, and the observed too.
+// difference [width, stride]: columns in which every cell holds by how much the coverage changes from its left
+// neighbour to it. Makes of it the coverage, less the observed, times confidence. Up to kLanes below a column are
+// written: zeros, where they and the observed ones were.
 void subtract_observed(const ObservedCells& cells, float* difference, size_t stride, size_t height, size_t width);
 
-// blurred = K * D on a box of cells outside of which D is zero; gives D' K D. Rows of D are `stride` apart, and can be
-// read, as zeros, kBlurRadius to the left of the box and kBlurRadius + kLanes to its right. Rows of `half` (scratch)
-// and `blurred` are padded(width) apart and aligned.
+// blurred = K * D on a box of cells outside of which D is zero; gives D' K D. K is the same along both axes: rows may
+// be columns. Rows of D are `stride` apart, and can be read, as zeros, kBlurRadius to the left of the box and
+// kBlurRadius + kLanes to its right. Rows of `half` (scratch) and `blurred` are padded(width) apart and aligned.
 double blur_cells(const float* difference, size_t stride, size_t width, size_t height, float* half, float* blurred);
 
 // Cells that hold an end, one after another.

@@ -48,7 +48,6 @@ void EndMotion::fill_jacobian(const OutlineSpans& spans, std::span<const uint32_
   for (size_t p = 0; p < num_points; ++p) {
     point_of_slot_[slots_[p]] = kNone;
     vertices_[p] = vertex_of_slot[slots_[p]];
-    skin_derivative_.prefetch(vertices_[p]);
   }
 
   skin_derivative_.set_points(vertices_);
