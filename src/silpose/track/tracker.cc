@@ -25,11 +25,11 @@ constexpr double kLongestCoast_s = 1.0;
 
 // A fit worse than this may be in a wrong basin: the pose is sought anew, first soon, then less and less often.
 constexpr double kGoodAccuracy = 0.97;
-constexpr double kFirstSeek_s = 0.12, kSeekLater = 3;  // times the interval before
+constexpr double kFirstSeek_s = 0.12, kSeekLater = 4;  // times the interval before
 // So it is where the fit gets worse than it was of late, by more than it goes up and down anyway: bad masks alone do
 // not have it sought for ever.
 constexpr double kLeastLost = 0.03, kLostDeviations = 3, kOfLate_s = 1;
-constexpr int kSeekHeadings = 3, kSeekRounds = 3, kSeekPatience = 2;  // at a time, other headings each time
+constexpr int kSeekHeadings = 3, kSeekRounds = 2, kSeekPatience = 2;  // at a time, other headings each time
 
 }  // namespace
 
