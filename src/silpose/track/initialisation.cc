@@ -21,7 +21,7 @@ namespace {
 // All candidates are fitted at these; the best of each heading at the finer ones.
 constexpr FitStage kCoarseStages[] = {{Blur::k32, 3}, {Blur::k16, 4}};
 constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}};
-constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};  // the better half goes on to the second
+constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};  // the better ones go on to the second
 constexpr FitStage kDistantStages[] = {{Blur::k8, 6}, {Blur::k4, 8}};
 constexpr uint64_t kDistantStream = std::numeric_limits<uint64_t>::max();  // of random numbers, and those below
 constexpr int kDistantRounds = 3;                                          // at most: no progress ends them
@@ -212,7 +212,7 @@ void search_limbs(const Sight& sight, const InitialisationOptions& options, cons
     const std::span stages(kVariantStages);
     fit_all(sight, stages.first(1), variants);
     sort_best_first(variants);
-    variants.resize((variants.size() + 1) / 2);
+    variants.resize(static_cast<size_t>(std::ceil(options.share_fitted_finely * static_cast<double>(variants.size()))));
     fit_all(sight, stages.subspan(1), variants);
     std::ranges::move(variants, std::back_inserter(starts));
     keep();

@@ -17,14 +17,15 @@
 namespace silpose {
 
 struct InitialisationOptions {
-  int num_per_heading = 5;    // of eight: candidates that are fitted finely
-  int num_headings = 8;       // that are searched, the best first, until a start explains the silhouette
-  int first_heading = 0;      // of the best, round and round
-  int num_varied = 4;         // the best of a heading, of which other limbs are tried
-  int num_rounds = 8;         // of trying other limbs of a heading, at most: no progress ends them
-  int patience = 3;           // rounds in a row that may bring little, where the best of all headings are searched
-  int num_random_limbs = 60;  // tried of each, besides reflections and exchanges
-  int num_fitted = 4;         // of those of each, the most promising
+  int num_per_heading = 5;         // of eight: candidates that are fitted finely
+  int num_headings = 8;            // that are searched, the best first, until a start explains the silhouette
+  int first_heading = 0;           // of the best, round and round
+  int num_varied = 4;              // the best of a heading, of which other limbs are tried
+  int num_rounds = 8;              // of trying other limbs of a heading, at most: no progress ends them
+  int patience = 3;                // rounds in a row that may bring little, where the best of all headings are searched
+  int num_random_limbs = 60;       // tried of each, besides reflections and exchanges
+  int num_fitted = 4;              // of those of each, the most promising
+  double share_fitted_finely = 1;  // of these, the better ones after a coarse fit
   int num_starts = 8;
   double merge_distance = 0.1;  // metres: starts whose every joint is nearer are one
   uint64_t seed = 1;

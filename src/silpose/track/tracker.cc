@@ -30,6 +30,7 @@ constexpr double kFirstSeek_s = 0.12, kSeekLater = 4;  // times the interval bef
 // not have it sought for ever.
 constexpr double kLeastLost = 0.03, kLostDeviations = 3, kOfLate_s = 1;
 constexpr int kSeekHeadings = 3, kSeekRounds = 2, kSeekPatience = 2;  // at a time, other headings each time
+constexpr double kSeekShare = 0.5;
 
 }  // namespace
 
@@ -73,6 +74,7 @@ struct Tracker::Impl {
       search.num_headings = kSeekHeadings;
       search.num_rounds = kSeekRounds;
       search.patience = kSeekPatience;
+      search.share_fitted_finely = kSeekShare;
       search.first_heading = kSeekHeadings * num_seeks;
       // In some frame of a clip landmarks are wrong as a whole: they hinder what they contradict more than what is
       // tracked, and no more.
