@@ -37,12 +37,14 @@ std::vector<Eigen::Vector3d> positions(const Skeleton& skeleton, std::span<const
 
 double reach_for(const Skeleton& skeleton, const Limb& limb, std::span<const LimbPoint> points,
                  std::span<const Eigen::Vector3d> targets, const Eigen::Matrix3d& seen, std::vector<double>& pose) {
-  constexpr int kIterations = 15;
+  constexpr int kIterations = 15, kLeastIterations = 3;
+  constexpr double kStale = 0.98;  // of the distance before: what is out of reach gets no nearer
   constexpr double kHold = 1e-4;  // m^2 / rad^2: keeps twists that no point shows where they are
   const auto num_dofs = static_cast<Eigen::Index>(limb.dofs.size());
   double largest = 0;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
     const PointMotion motion(skeleton, pose);
+    const double before = largest;
     Eigen::MatrixXd normal = kHold * Eigen::MatrixXd::Identity(num_dofs, num_dofs);
     Eigen::VectorXd right = Eigen::VectorXd::Zero(num_dofs);
     largest = 0;
@@ -56,6 +58,7 @@ double reach_for(const Skeleton& skeleton, const Limb& limb, std::span<const Lim
       right += jacobian.transpose() * off;
     }
     if (iteration == kIterations || largest < 0.005) break;
+    if (iteration > kLeastIterations && largest > kStale * before) break;
     Eigen::VectorXd step = normal.ldlt().solve(right);
     const double longest = step.cwiseAbs().maxCoeff();
     if (longest > 0.7) step *= 0.7 / longest;
