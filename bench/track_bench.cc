@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kLeadIn = 15, kFrames = 150;
+constexpr const char* kModel = "human:height=1.69";
 
 // What a command prints on its standard output. Errors: throws std::runtime_error unless it exits 0.
 std::string output_of(const std::string& command) {
@@ -60,10 +61,12 @@ Figure track_fps(const std::string& options, double least_accuracy, int rounds) 
   const auto run = [&](const std::string& arguments) {
     return nlohmann::json::parse(output_of(fmt::format("'{}' {} --quiet --json", silpose.string(), arguments)));
   };
-  run(fmt::format("synth --motion sway --frames {} --lead-in {} --colour --out '{}'", kFrames, kLeadIn, truth));
-  const std::string track =
-      fmt::format("track '{}' --segmenter background --background lead-in:{} --camera '{}/camera.toml' --out '{}' {}",
-                  video, kLeadIn / 30.0, truth, result, options);
+  run(fmt::format("synth --motion sway --model {} --frames {} --lead-in {} --colour --out '{}'", kModel, kFrames,
+                  kLeadIn, truth));
+  const std::string track = fmt::format(
+      "track '{}' --model {} --segmenter background --background lead-in:{} --camera '{}/camera.toml' "
+      "--out '{}' {}",
+      video, kModel, kLeadIn / 30.0, truth, result, options);
 
   verify(run(track)["frames_tracked"] == kFrames, "frames tracked");
   const nlohmann::json errors = run(fmt::format("evaluate --result '{}' --truth '{}'", result, truth));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 #include "silpose/base/check.h"
 #include "silpose/image/mask_count.h"
@@ -111,12 +112,34 @@ Mask mask_from_image(const ByteImage& image, int threshold) {
   return mask;
 }
 
+// Eight pixels at a time, in one number.
+void bytes_from_bits(std::span<const uint64_t> words, std::span<uint8_t> bytes) {
+  static_assert(std::endian::native == std::endian::little);
+  constexpr uint64_t kEach = 0x0101010101010101, kOwnBit = 0x8040201008040201, kCarry = 0x7f7f7f7f7f7f7f7f;
+  for (size_t x = 0; x < bytes.size(); x += 8) {
+    const uint64_t own = ((words[x >> 6] >> (x & 63) & 0xff) * kEach) & kOwnBit;
+    const uint64_t eight = ((own + kCarry) >> 7 & kEach) * 255;
+    std::memcpy(&bytes[x], &eight, std::min<size_t>(8, bytes.size() - x));
+  }
+}
+
+void bits_from_bytes(std::span<const uint8_t> bytes, std::span<uint64_t> words) {
+  constexpr uint64_t kEach = 0x0101010101010101, kLow = 0x7f7f7f7f7f7f7f7f, kGather = 0x0102040810204080;
+  std::ranges::fill(words, 0);
+  for (size_t x = 0; x < bytes.size(); x += 8) {
+    uint64_t eight = 0;
+    std::memcpy(&eight, &bytes[x], std::min<size_t>(8, bytes.size() - x));
+    const uint64_t set = (((eight & kLow) + kLow) | eight) >> 7 & kEach;
+    words[x >> 6] |= (set * kGather >> 56) << (x & 63);
+  }
+}
+
 ByteImage image_from_mask(const Mask& mask) {
   ByteImage image(mask.width(), mask.height());
   for (int y = 0; y < mask.height(); ++y) {
     const auto words = mask.row(y);
     const auto bytes = image.row(y);
-    for (size_t x = 0; x < bytes.size(); ++x) bytes[x] = static_cast<uint8_t>(((words[x >> 6] >> (x & 63)) & 1) * 255);
+    bytes_from_bits(words, bytes);
   }
   return image;
 }

@@ -69,6 +69,11 @@ double intersection_over_union(const Mask& a, const Mask& b);
 Mask mask_from_text(std::string_view text);
 std::string text_from_mask(const Mask& mask);
 
+// One row of a mask as bytes, 255 where it is set and 0 elsewhere; and back, set where a byte is not 0. Bits beyond the
+// bytes become 0. REQUIRES: words for all bytes.
+void bytes_from_bits(std::span<const uint64_t> words, std::span<uint8_t> bytes);
+void bits_from_bytes(std::span<const uint8_t> bytes, std::span<uint64_t> words);
+
 // One-channel bytes: set where >= threshold; and back, 0 or 255.
 Mask mask_from_image(const ByteImage& image, int threshold = 128);
 ByteImage image_from_mask(const Mask& mask);

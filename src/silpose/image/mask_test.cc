@@ -86,6 +86,23 @@ TEST(Mask, TextAndImagesGoRoundTrip) {
   EXPECT_EQ(mask_from_image(image_from_mask(mask)), mask);
 }
 
+TEST(Mask, RowsGoToBytesAndBack) {
+  for (const int width : {1, 7, 8, 9, 63, 64, 65, 130}) {
+    const Mask mask = mask_from_image(noise_image(width, 3, 11));
+    for (int y = 0; y < mask.height(); ++y) {
+      std::vector<uint8_t> bytes(static_cast<size_t>(width), 7);
+      bytes_from_bits(mask.row(y), bytes);
+      for (int x = 0; x < width; ++x) EXPECT_EQ(bytes[static_cast<size_t>(x)], mask.get(x, y) ? 255 : 0) << width;
+      for (const int value : {1, 127, 128, 255}) {
+        for (uint8_t& byte : bytes) byte = byte != 0 ? static_cast<uint8_t>(value) : 0;
+        Mask back(width, 1);
+        bits_from_bytes(bytes, back.row(0));
+        for (int x = 0; x < width; ++x) EXPECT_EQ(back.get(x, 0), mask.get(x, y)) << width << " " << value;
+      }
+    }
+  }
+}
+
 TEST(Mask, RefusesWhatCannotBe) {
   EXPECT_THROW(Mask(-1, 2), std::invalid_argument);
   EXPECT_THROW(xor_count(Mask(2, 2), Mask(3, 2)), std::invalid_argument);

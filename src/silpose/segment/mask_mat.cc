@@ -5,21 +5,14 @@ namespace silpose {
 cv::Mat mat_from_mask(const Mask& mask) {
   cv::Mat mat(mask.height(), mask.width(), CV_8U);
   for (int y = 0; y < mask.height(); ++y) {
-    uint8_t* row = mat.ptr(y);
-    const auto words = mask.row(y);
-    for (int x = 0; x < mask.width(); ++x) row[x] = (words[static_cast<size_t>(x) >> 6] >> (x & 63)) & 1u ? 255 : 0;
+    bytes_from_bits(mask.row(y), {mat.ptr(y), static_cast<size_t>(mask.width())});
   }
   return mat;
 }
 
 Mask mask_from_mat(const cv::Mat& mat) {
   Mask mask(mat.cols, mat.rows);
-  for (int y = 0; y < mat.rows; ++y) {
-    const uint8_t* row = mat.ptr(y);
-    for (int x = 0; x < mat.cols; ++x) {
-      if (row[x] != 0) mask.set(x, y);
-    }
-  }
+  for (int y = 0; y < mat.rows; ++y) bits_from_bytes({mat.ptr(y), static_cast<size_t>(mat.cols)}, mask.row(y));
   return mask;
 }
 

@@ -24,7 +24,6 @@ constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}
 constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};  // the better ones go on to the second
 constexpr FitStage kDistantStages[] = {{Blur::k8, 6}, {Blur::k4, 8}};
 constexpr uint64_t kDistantStream = std::numeric_limits<uint64_t>::max();  // of random numbers, and those below
-constexpr int kDistantRounds = 3;                                          // at most: no progress ends them
 // E of a start that leaves nothing to explain; and how far a variant must be from its origin to be worth a fit, metres.
 constexpr double kExplained = 3, kNovelty = 0.15;
 constexpr double kTwoAtOnce = 0.3;  // share of the random limbs that come in pairs
@@ -290,7 +289,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   // The best of all once more, against each other; then from what looks like them and is far away, while it helps.
   uint64_t index = headings.size();
   search_limbs(sight, options, {index++, least, options.patience}, starts);
-  for (int round = 0; round < kDistantRounds && starts.front().fit.energy > kExplained; ++round) {
+  for (int round = 0; round < options.num_distant_rounds && starts.front().fit.energy > kExplained; ++round) {
     const double before = starts.front().cost();
     std::vector<Candidate> distant = distant_variants(sight, starts, options, index);
     if (distant.empty()) break;

@@ -26,6 +26,7 @@ struct InitialisationOptions {
   int num_random_limbs = 60;       // tried of each, besides reflections and exchanges
   int num_fitted = 4;              // of those of each, the most promising
   double share_fitted_finely = 1;  // of these, the better ones after a coarse fit
+  int num_distant_rounds = 3;      // of what looks like the best and is far from it, at most: no progress ends them
   int num_starts = 8;
   double merge_distance = 0.1;  // metres: starts whose every joint is nearer are one
   uint64_t seed = 1;

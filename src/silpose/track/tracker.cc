@@ -74,6 +74,7 @@ struct Tracker::Impl {
       search.num_headings = kSeekHeadings;
       search.num_rounds = kSeekRounds;
       search.patience = kSeekPatience;
+      if (num_seeks % 2 == 1) search.num_distant_rounds = 0;  // every other time
       search.share_fitted_finely = kSeekShare;
       search.first_heading = kSeekHeadings * num_seeks;
       // In some frame of a clip landmarks are wrong as a whole: they hinder what they contradict more than what is
