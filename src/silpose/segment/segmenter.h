@@ -46,7 +46,7 @@ class Segmenter {
 
   // Where the subject is expected in the next picture, [H, W]; empty: nobody knows. It helps to choose among blobs
   // (choose_blob()) and never becomes foreground by itself. A network needs no such help.
-  virtual void expect(Mask /*silhouette*/) {}
+  virtual void expect(Mask /*silhouette*/) {}  // NOLINT(performance-unnecessary-value-param): others keep it
 
   // Whether its masks come with landmarks.
   [[nodiscard]] virtual bool finds_landmarks() const { return false; }
