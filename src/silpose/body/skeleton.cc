@@ -53,8 +53,7 @@ Skeleton::Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof>
       check(std::abs(dof.axis.norm() - 1) < 1e-9, "skeleton '{}': axis of '{}' is not a unit vector", name_, dof.name);
       check(dof.lower < dof.upper && std::isfinite(dof.lower) && std::isfinite(dof.upper),
             "skeleton '{}': limits of '{}' are {} to {}", name_, dof.name, dof.lower, dof.upper);
-      check(!dof.is_translation || !rotated, "skeleton '{}': translation '{}' comes after a rotation", name_,
-            dof.name);
+      check(!dof.is_translation || !rotated, "skeleton '{}': translation '{}' comes after a rotation", name_, dof.name);
       rotated = !dof.is_translation;
       ++uses[d];
       Step step{.dof_idx = d, .is_translation = dof.is_translation};

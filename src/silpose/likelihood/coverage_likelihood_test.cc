@@ -5,13 +5,13 @@
 
 #include <cmath>
 
+#include "silpose/base/simd_targets.h"
 #include "silpose/body/human.h"
 #include "silpose/body/test_body.h"
 #include "silpose/likelihood/coverage_difference.h"
 #include "silpose/likelihood/coverage_raster.h"
 #include "silpose/likelihood/coverage_reference.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/base/simd_targets.h"
 
 namespace silpose {
 namespace {

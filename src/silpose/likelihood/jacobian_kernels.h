@@ -11,7 +11,7 @@ namespace silpose {
 
 // Cells that hold an end, in row-major order; a few more of each number can be read.
 struct EndCells {
-  const int32_t *x, *y;    // [n]
+  const int32_t *x, *y;   // [n]
   const int32_t* blocks;  // [n] of the Jacobian's row
   size_t count = 0;
   // rank[y * rank_stride + x] is how many come before cell (x, y); it can be read kBlurRadius + 1 cells to either side,
@@ -23,7 +23,7 @@ struct EndCells {
 
 // How points of the surface move: two rows each (pixel x, then y), and the blocks where they are not zero.
 struct PointRows {
-  const float* rows;       // [points, 2, stride]
+  const float* rows;      // [points, 2, stride]
   const int32_t* blocks;  // [points]
 };
 
@@ -40,8 +40,7 @@ void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, s
 
 // half_near [n, stride] = for each row i of `jacobian` [n, stride], K_ii / 2 J_i + sum over j > i of K_ij J_j, so that
 // J' K J = M + M' with M = J' half_near. near_blocks [n]: where it is not zero.
-void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near,
-                   int32_t* near_blocks);
+void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near, int32_t* near_blocks);
 
 // A matrix [n, stride], and for each of its blocks which rows are not zero there: a bit a row, [blocks, words].
 struct SparseRows {

@@ -40,8 +40,8 @@ class Segmenter {
   // Errors: the picture has another size than those learned from; given masks that end, break or have another size.
   virtual Result<Segmentation> segment(const ByteImage& image, int64_t index) = 0;
 
-  // Does what segment() can do for a picture before anybody knows where the subject is expected in it; segment() of that
-  // picture then takes less time and finds the same. While it runs only expect() may be called.
+  // Does what segment() can do for a picture before anybody knows where the subject is expected in it; segment() of
+  // that picture then takes less time and finds the same. While it runs only expect() may be called.
   virtual void prepare(const ByteImage& /*image*/, int64_t /*index*/) {}
 
   // Where the subject is expected in the next picture, [H, W]; empty: nobody knows. It helps to choose among blobs

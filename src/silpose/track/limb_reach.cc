@@ -39,7 +39,7 @@ double reach_for(const Skeleton& skeleton, const Limb& limb, std::span<const Lim
                  std::span<const Eigen::Vector3d> targets, const Eigen::Matrix3d& seen, std::vector<double>& pose) {
   constexpr int kIterations = 15, kLeastIterations = 3;
   constexpr double kStale = 0.98;  // of the distance before: what is out of reach gets no nearer
-  constexpr double kHold = 1e-4;  // m^2 / rad^2: keeps twists that no point shows where they are
+  constexpr double kHold = 1e-4;   // m^2 / rad^2: keeps twists that no point shows where they are
   const auto num_dofs = static_cast<Eigen::Index>(limb.dofs.size());
   double largest = 0;
   for (int iteration = 0; iteration <= kIterations; ++iteration) {
