@@ -310,7 +310,7 @@ Result<std::optional<Instant>> ObservationSource::read(bool segments) {
       num_cut_ += seen.trust.touches_border ? 1 : 0;
     }
     instant.frame = std::move(**frame);
-    if (segments) read_ahead();
+    if (segments && !video_->is_live()) read_ahead();  // a live picture should be the newest there is
     return std::optional<Instant>(std::move(instant));
   }
 }

@@ -1,5 +1,6 @@
 // ObservationSource: from the videos and the options of a command to one observation a camera and instant.
-// The next frame is read, and what of its masks can be told already is found, while the last one is tracked.
+// The next frame of a recording is read, and what of its masks can be told already is found, while the last one is
+// tracked.
 // Threads: the main thread only; segmentation itself uses all cores.
 #pragma once
 

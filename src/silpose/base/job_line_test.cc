@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <stdexcept>
 #include <thread>
@@ -30,13 +31,14 @@ TEST(JobLine, DoesJobsInOrderBesideTheGiver) {
 
 TEST(JobLine, GivingWaitsWhereTooManyWait) {
   JobLine line(1);
-  int num_done = 0;
+  std::atomic<int> num_done = 0;
   for (int i = 0; i < 4; ++i) {
     ASSERT_TRUE(line.give([&]() -> Result<void> {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       ++num_done;
       return {};
     }));
+    EXPECT_LE(i + 1 - num_done, 2);  // one is done, one waits
   }
   ASSERT_TRUE(line.finish());
   EXPECT_EQ(num_done, 4);

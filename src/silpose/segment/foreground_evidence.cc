@@ -19,8 +19,7 @@ constexpr float kThreshold = 22;
 // nine pixels has half the variance of one, not a ninth.
 // Not where the pixel itself shows next to nothing: there the window looks over the subject's edge.
 constexpr float kWindowWeight = 2, kWindowMost = 10;
-// Evidence of one pixel is bounded, so that neighbours can outvote it.
-constexpr float kMostFor = 6;
+constexpr float kMostFor = 6;  // as kMostAgainst
 // Shadows darken to a third at most: the deviation of the factor. Light thrown back brightens far less.
 constexpr float kShadowDeviation = 0.15f, kGlowDeviation = 0.04f, kMostFactor = 1.5f;
 // A shadow keeps the background's texture: the weight of what is left over, in noise variances.

@@ -30,7 +30,7 @@ constexpr double kFirstSeek_s = 0.12, kSeekLater = 4;  // times the interval bef
 // not have it sought for ever.
 constexpr double kLeastLost = 0.03, kLostDeviations = 3, kOfLate_s = 1;
 constexpr int kSeekHeadings = 3, kSeekRounds = 2, kSeekPatience = 2;  // at a time, other headings each time
-constexpr double kSeekShare = 0.5;
+constexpr double kSeekShare = 0.5;                                    // of other limbs that are fitted finely
 
 }  // namespace
 
@@ -40,18 +40,16 @@ struct Tracker::Impl {
     const auto fine = level_of_detail(options.body, *options.lod_vertices);
     likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
     likelihoods.plausibility = std::make_shared<const Plausibility>(fine, *options.floor);
-    if (options.num_hypotheses) {
-      likelihoods.coarse = std::make_shared<const CoverageLikelihood>(level_of_detail(options.body, kRankingVertices),
-                                                                      options.cameras, kRankingRows);
-    } else {
-      for (const PinholeCamera& camera : options.cameras) {
-        likelihoods.renderers.push_back(std::make_shared<const BatchRenderer>(fine, camera));
-      }
-    }
     const auto coarse = level_of_detail(options.body, kRankingVertices);
     for (const PinholeCamera& camera : options.cameras) {
       seen_by.emplace_back(options.body, camera);
       expected_by.emplace_back(coarse, camera);
+      if (!options.num_hypotheses) {
+        likelihoods.renderers.push_back(std::make_shared<const BatchRenderer>(fine, camera));
+      }
+    }
+    if (options.num_hypotheses) {
+      likelihoods.coarse = std::make_shared<const CoverageLikelihood>(coarse, options.cameras, kRankingRows);
     }
     filter = make_pose_filter(options, likelihoods);
     for_start = start_proposal(options);
