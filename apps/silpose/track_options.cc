@@ -108,6 +108,12 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
                  "First pose: descent; landmarks (the same, and it agrees with those that --segmenter learned finds); "
                  "auto (landmarks where some are found); or a poses.csv (its row of the first frame)")
       ->capture_default_str();
+  app.add_option(
+         "--evidence", options.evidence,
+         "What poses are compared by: silhouette; landmarks, the body's keypoints that --segmenter learned finds; "
+         "or both, where there are some")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"silhouette", "landmarks", "both"}));
   app.add_flag("--draw-floor", options.draw_floor,
                "Draw the floor y = 0 (1 m squares) and the footprints into the overlay: do camera and feet fit it?");
   app.add_option("--config", options.config, "Options from a TOML file; the command line wins");
@@ -175,6 +181,9 @@ Result<TrackerOptions> tracker_options(const TrackOptions& options, std::shared_
   tracker.size_deviation = size_deviation_of(options.model);
   // Without a file the floor is a guess: where the camera was estimated, poses pressed on it came out worse, too.
   if (!tracker.floor && !options.camera.has_file()) tracker.floor = false;
+  tracker.evidence = options.evidence == "silhouette"  ? EvidenceKind::kSilhouette
+                     : options.evidence == "landmarks" ? EvidenceKind::kKeypoints
+                                                       : EvidenceKind::kBoth;
   tracker.root_fixed = options.root == "fixed";
   tracker.resample_below = options.resample_below.value_or(tracker.resample_below);
   if (options.estimate == "mean") tracker.estimate = Estimate::kMean;

@@ -20,7 +20,7 @@ namespace silpose::app {
 struct TrackOptions {
   InputOptions input;
   CameraOptions camera;
-  std::string model = "human", out, config, init = "auto", root = "tracked";
+  std::string model = "human", out, config, init = "auto", root = "tracked", evidence = "both";
   std::optional<std::string> estimate;
   std::optional<double> resample_below, level_iou;
   std::optional<bool> fit_body;

@@ -90,6 +90,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
   run["background"] = told.source.background();
   run["start_by_landmarks"] = tracked.used.landmarks;
+  run["evidence"] = told.source.finds_landmarks() ? told.options.evidence : "silhouette";
   run["cameras"] = nlohmann::ordered_json::array();
   for (const PinholeCamera& camera : told.writer.cameras()) run["cameras"].push_back(camera.name);
   run["warnings"] = told.warnings;

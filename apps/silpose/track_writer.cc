@@ -75,6 +75,7 @@ Result<std::vector<Observation>> TrackWriter::read_masks(int64_t frame_idx, std:
     observations[c].mask = std::move(*mask);
     observations[c].trust = beside[c].trust;
     observations[c].landmarks = beside[c].landmarks;
+    observations[c].keypoints = beside[c].keypoints;
   }
   return observations;
 }

@@ -31,8 +31,9 @@ inline constexpr std::string_view kConfidenceFolder = "confidence";
 struct BesideMask {
   Trust trust;
   std::vector<SeenLandmark> landmarks;
+  Keypoints3D keypoints;
 
-  static auto members(auto& b) { return std::tie(b.trust, b.landmarks); }
+  static auto members(auto& b) { return std::tie(b.trust, b.landmarks, b.keypoints); }
 };
 
 class TrackWriter {

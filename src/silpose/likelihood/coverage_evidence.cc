@@ -30,11 +30,25 @@ std::optional<size_t> CoverageEvidence::first_seen() const {
   return seen == views.end() ? std::nullopt : std::optional(static_cast<size_t>(seen - views.begin()));
 }
 
-CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observations, Blur widest,
-                                             Blur narrowest) const {
+bool CoverageEvidence::has_directions() const {
+  return std::ranges::any_of(views,
+                             [](const View& view) { return view.keypoints && view.keypoints->num_directions(); });
+}
+
+double CoverageEvidence::keypoint_cost(const Skeleton& skeleton, std::span<const double> pose) const {
+  double sum = 0;
+  for (const View& view : views) {
+    if (view.keypoints) sum += view.trust * view.keypoints->cost(skeleton, pose);
+  }
+  return sum;
+}
+
+CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observations, Blur widest, Blur narrowest,
+                                             EvidenceKind kind) const {
   check(observations.size() == cameras().size(), "CoverageLikelihood: {} observations for {} cameras",
         observations.size(), cameras().size());
   CoverageEvidence evidence;
+  evidence.silhouettes = kind != EvidenceKind::kKeypoints;
   for (size_t c = 0; c < observations.size(); ++c) {
     const Observation& observation = observations[c];
     const PinholeCamera& camera = cameras()[c];
@@ -45,6 +59,12 @@ CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observ
     evidence.noise.push_back(0);
     if (observation.trust.nothing_found || observation.box.empty()) continue;
     view.trust = observation.trust.overall;
+    if (kind != EvidenceKind::kSilhouette) {
+      // By themselves keypoints must tell where the body is, too.
+      const KeypointWeights weights{.places = kind == EvidenceKind::kKeypoints ? 1 : KeypointWeights{}.places};
+      auto term = std::make_shared<const KeypointTerm>(body(), camera, observation, weights);
+      if (term->tells_pose()) view.keypoints = std::move(term);
+    }
     const double extent = std::max(observation.box.height, observation.box.width);
     view.pixel_unit = std::max(extent / CoverageEvidence::kSubjectHeight, 0.25);
     view.outline_length = outline_length(observation.mask);

@@ -114,8 +114,9 @@ std::vector<double> CoverageLikelihood::residuals(const CoverageEvidence& eviden
 
 double CoverageLikelihood::energy(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,
                                   Scratch& scratch) const {
+  double sum = evidence.keypoint_cost(impl_->body->skeleton, pose);
+  if (!evidence.silhouettes) return sum;
   const std::vector<double> residual = residuals(evidence, blur, pose, scratch);
-  double sum = 0;
   for (size_t c = 0; c < residual.size(); ++c) {
     if (residual[c] > 0) sum += evidence.views[c].trust / evidence.noise[c] * residual[c];
   }
@@ -132,6 +133,11 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
   for (size_t c = 0; c < impl_->views.size(); ++c) {
     const CoverageEvidence::View& evident = evidence.views[c];
     if (evident.trust <= 0) continue;
+    if (evident.keypoints) {
+      equations.energy +=
+          evident.keypoints->add(impl_->body->skeleton, pose, evident.trust, equations.gradient, equations.hessian);
+    }
+    if (!evidence.silhouettes) continue;
     const Impl::View& view = impl_->views[c];
     const CoverageEvidence::Raster& raster = evident.rasters[static_cast<size_t>(blur)];
     if (draw(c, raster, pose, s)) {

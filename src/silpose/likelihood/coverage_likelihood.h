@@ -9,6 +9,8 @@
 // length along the outline (px^3) and E counts independent errors: -2 log-likelihood.
 // The derivative is exact for the sampled rows: each end of a span moves by dx = J_x - (dx/dy) J_y of the surface point
 // there. Blurring is done once and on both sides: G * G is one kernel, wanted only at the cells that hold an end.
+// Where a network found keypoints, their cost (keypoint_term.h) is added to E, so that whatever fits, ranks or weighs
+// poses by E goes by both kinds of evidence.
 // Based on: Gauss-Newton on smooth image differences (references.bib: nocedal2006).
 // Threads: constant after construction; one Scratch per thread.
 #pragma once
@@ -24,6 +26,7 @@
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/image/image.h"
+#include "silpose/likelihood/keypoint_term.h"
 #include "silpose/shape/observation.h"
 
 namespace silpose {
@@ -32,7 +35,11 @@ namespace silpose {
 enum class Blur { k2 = 0, k4, k8, k16, k32 };
 inline constexpr std::array<int, 5> kBlurSigma = {2, 4, 8, 16, 32};
 
-// The observations of one instant, as covered cells.
+// What an observation is compared by. A camera without keypoints has silhouettes alone with kBoth, and nothing at all
+// with kKeypoints.
+enum class EvidenceKind { kSilhouette, kKeypoints, kBoth };
+
+// The observations of one instant, as covered cells and keypoints.
 struct CoverageEvidence {
   static constexpr double kSubjectHeight = 280;  // pixels
   struct Raster {
@@ -50,9 +57,11 @@ struct CoverageEvidence {
     double pixel_unit = 1;                          // pixels that one pixel of a subject of kSubjectHeight is worth
     double outline_length = 0;                      // pixels, of the observed mask
     std::array<Raster, kBlurSigma.size()> rasters;  // by Blur
+    std::shared_ptr<const KeypointTerm> keypoints;  // null: none
   };
   std::vector<View> views;    // [C]
   std::vector<double> noise;  // [C] outline variance times correlation length, px^3; may be set by the caller
+  bool silhouettes = true;    // whether these count
 
   // Sets the noise of the cameras that have one, in units of pixel_unit^3 (as estimate_noise() gives it). [C], or
   // empty.
@@ -61,6 +70,11 @@ struct CoverageEvidence {
 
   // The first camera that has a say; nothing where none has.
   [[nodiscard]] std::optional<size_t> first_seen() const;
+
+  // Whether any camera's directions in space count.
+  [[nodiscard]] bool has_directions() const;
+  // Cost of the keypoints alone. `skeleton` is that of the body, or of one made stretchable.
+  [[nodiscard]] double keypoint_cost(const Skeleton& skeleton, std::span<const double> pose) const;
 };
 
 // Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps
@@ -91,7 +105,8 @@ class CoverageLikelihood {
   // `narrowest` to `widest` are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit
   // its camera.
   [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32,
-                                         Blur narrowest = Blur::k2) const;
+                                         Blur narrowest = Blur::k2,
+                                         EvidenceKind kind = EvidenceKind::kSilhouette) const;
 
   // What evaluations work in; one a thread. Given back to its likelihood in the end, for the next one: cheap to make.
   class Scratch {

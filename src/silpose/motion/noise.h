@@ -22,7 +22,7 @@ inline constexpr double kTypicalSigmaDeg = 4;         // the table's own deviati
 [[nodiscard]] std::vector<double> acceleration_deviation(const Skeleton& skeleton);
 
 // Deviation [D] of poses from all joints at zero, radians; 0 for what may be anywhere: translations, headings, lengths,
-// joints that turn freely.
-[[nodiscard]] std::vector<double> pose_deviation(const Skeleton& skeleton);
+// joints that turn freely. With `directions_seen` those joints are looser whose segments' directions are measured.
+[[nodiscard]] std::vector<double> pose_deviation(const Skeleton& skeleton, bool directions_seen = false);
 
 }  // namespace silpose

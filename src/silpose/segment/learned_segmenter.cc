@@ -62,6 +62,7 @@ class LearnedSegmenter : public Segmenter {
     forgive_edges(found.confidence, mask);
     Segmentation judged = monitor_.judge(grow(mask, clean_up_.grow_px), std::move(found.confidence));
     judged.landmarks = std::move(found.landmarks);
+    judged.keypoints = std::move(found.keypoints);
     return judged;
   }
 
@@ -91,6 +92,7 @@ class LearnedSegmenter : public Segmenter {
     Mask kept;             // [H, W] the person, empty where there is none
     ByteImage confidence;  // [H, W]
     std::vector<SeenLandmark> landmarks = {};
+    Keypoints3D keypoints = {};
   };
 
   // By the network alone; follows the person.
@@ -128,6 +130,7 @@ class LearnedSegmenter : public Segmenter {
     if (found.kept.count() > 0) {
       square_ = reading->next_square();
       found.landmarks = reading->body_landmarks();
+      found.keypoints = reading->body_keypoints();
     }
     num_without_ = square_ ? 0 : num_without_ + 1;
     return found;

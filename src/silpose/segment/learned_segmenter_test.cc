@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -60,6 +61,37 @@ TEST(LearnedSegmenter, FindsTheJointsWhereTheyAre) {
     ASSERT_LT(at, std::ssize(names)) << seen.name;
     const Eigen::Vector2d truth = sequence().cameras[0].project(positions[static_cast<size_t>(at)]).value();
     EXPECT_LT(std::hypot(seen.x - truth.x(), seen.y - truth.y()), 0.08 * found.mask.bounding_box().height) << seen.name;
+  }
+}
+
+// In space, too: thighs, shins and the trunk point where the rendered body's do.
+TEST(LearnedSegmenter, SeesWhereLimbsPointInSpace) {
+  const auto learned = segmenter();
+  EXPECT_TRUE(learned->segment(ColourScene(sequence(), 0).draw(0), 0).value().keypoints.empty());
+  const Keypoints3D found = learned->segment(ColourScene(sequence(), 0).draw(4), 4).value().keypoints;
+  ASSERT_EQ(found.points.size(), 14u);
+  const auto names = landmark_names(*sequence().body);
+  const auto positions = landmark_positions(*sequence().body, pose_of_frame(sequence(), 4));
+  const PinholeCamera& camera = sequence().cameras[0];
+  const Eigen::Vector3d ray = camera.ray_from_pixel({found.centre_x, found.centre_y});
+  const Eigen::Matrix3d world_from_keypoints =
+      camera.cam_from_world.rotation.transpose() *
+      Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), ray).toRotationMatrix();
+  const auto truth = [&](const std::string& name) {
+    return positions[static_cast<size_t>(std::ranges::find(names, name) - names.begin())];
+  };
+  const auto seen = [&](const std::string& name) -> Eigen::Vector3d {
+    const Keypoint3D* point = found.find(name);
+    return world_from_keypoints * Eigen::Vector3d(point->x[0], point->x[1], point->x[2]);
+  };
+  for (const auto& [from, to] : {std::pair{"left_thigh", "left_shin"},
+                                 {"right_thigh", "right_shin"},
+                                 {"left_shin", "left_foot"},
+                                 {"right_shin", "right_foot"},
+                                 {"left_thigh", "left_upper_arm"},
+                                 {"right_thigh", "right_upper_arm"}}) {
+    const Eigen::Vector3d expected = (truth(to) - truth(from)).normalized();
+    EXPECT_GT(expected.dot((seen(to) - seen(from)).normalized()), std::cos(0.5)) << from;
   }
 }
 

@@ -12,6 +12,12 @@ constexpr int kReadSize = 256, kDetectSize = 224;
 constexpr size_t kNumAnchors = 2254;
 constexpr double kSureEnough = 0.5, kSamePerson = 0.3;
 
+// Which of the network's landmarks are points of the human body. Those of the face are no joints.
+constexpr std::pair<const char*, size_t> kOfBody[] = {
+    {"left_upper_arm", 11}, {"right_upper_arm", 12}, {"left_forearm", 13}, {"right_forearm", 14}, {"left_hand", 15},
+    {"right_hand", 16},     {"left_thigh", 23},      {"right_thigh", 24},  {"left_shin", 25},     {"right_shin", 26},
+    {"left_foot", 27},      {"right_foot", 28},      {"left_toe_tip", 31}, {"right_toe_tip", 32}};
+
 double probability(double logit) { return 1 / (1 + std::exp(-logit)); }
 
 Result<TfliteNetwork> load_network(const std::filesystem::path& file, const std::vector<std::string>& outputs, int size,
@@ -63,14 +69,17 @@ PictureSquare PersonReading::next_square() const {
 }
 
 std::vector<SeenLandmark> PersonReading::body_landmarks() const {
-  // Those of the face are no joints.
-  static constexpr std::pair<const char*, size_t> kOfBody[] = {
-      {"left_upper_arm", 11}, {"right_upper_arm", 12}, {"left_forearm", 13}, {"right_forearm", 14}, {"left_hand", 15},
-      {"right_hand", 16},     {"left_thigh", 23},      {"right_thigh", 24},  {"left_shin", 25},     {"right_shin", 26},
-      {"left_foot", 27},      {"right_foot", 28},      {"left_toe_tip", 31}, {"right_toe_tip", 32}};
   std::vector<SeenLandmark> seen;
   for (const auto& [name, i] : kOfBody) seen.push_back({name, landmarks[i].x, landmarks[i].y, landmarks[i].visibility});
   return seen;
+}
+
+Keypoints3D PersonReading::body_keypoints() const {
+  Keypoints3D keypoints{square.x, square.y, {}};
+  for (const auto& [name, i] : kOfBody) {
+    keypoints.points.push_back({name, landmarks[i].in_space, landmarks[i].visibility});
+  }
+  return keypoints;
 }
 
 Image<float> PersonReading::logits_in_picture(int width, int height) const {
@@ -78,8 +87,9 @@ Image<float> PersonReading::logits_in_picture(int width, int height) const {
 }
 
 Result<PersonNetwork> PersonNetwork::load(const std::filesystem::path& folder) {
-  Result<TfliteNetwork> network = load_network(folder / kLandmarkFile, {"Identity", "Identity_1", "Identity_2"},
-                                               kReadSize, {{1, 195}, {1, 1}, {1, kReadSize, kReadSize, 1}});
+  Result<TfliteNetwork> network =
+      load_network(folder / kLandmarkFile, {"Identity", "Identity_1", "Identity_2", "Identity_4"}, kReadSize,
+                   {{1, 195}, {1, 1}, {1, kReadSize, kReadSize, 1}, {1, 117}});
   if (!network) return network.failure();
   return PersonNetwork(std::move(*network));
 }
@@ -91,7 +101,13 @@ PersonReading PersonNetwork::read(const ByteImage& image, const PictureSquare& s
   for (size_t i = 0; i < kNumPersonLandmarks; ++i) {
     const float* values = &outputs[0][5 * i];  // x, y, z, visibility, presence
     const auto [x, y] = square.in_picture(values[0] / kReadSize, values[1] / kReadSize);
-    reading.landmarks[i] = {x, y, probability(values[3])};
+    // In space the square is upright: its turn is undone about the viewing ray.
+    const float* in_space = &outputs[3][3 * i];
+    const double c = std::cos(square.turn_rad), s = std::sin(square.turn_rad);
+    reading.landmarks[i] = {x,
+                            y,
+                            probability(values[3]),
+                            {c * in_space[0] - s * in_space[1], s * in_space[0] + c * in_space[1], in_space[2]}};
   }
   return reading;
 }

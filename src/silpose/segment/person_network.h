@@ -5,11 +5,13 @@
 // itself.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
+#include "silpose/image/keypoints3d.h"
 #include "silpose/image/mask.h"
 #include "silpose/image/seen_landmark.h"
 #include "silpose/segment/picture_square.h"
@@ -20,6 +22,8 @@ namespace silpose {
 struct PersonLandmark {
   double x = 0, y = 0;    // in the picture
   double visibility = 0;  // 0 to 1
+  // Metres about the middle between the hips, axes as Keypoints3D has them.
+  std::array<double, 3> in_space = {};
 };
 
 // Of the landmarks, the 33 of the body come first; then the middle of the person and a point straight above it.
@@ -35,6 +39,7 @@ struct PersonReading {
   [[nodiscard]] PictureSquare next_square() const;
   // Those that are joints, or end points, of the human, under its names.
   [[nodiscard]] std::vector<SeenLandmark> body_landmarks() const;
+  [[nodiscard]] Keypoints3D body_keypoints() const;
   // [height, width]; far below 0 outside of the square.
   [[nodiscard]] Image<float> logits_in_picture(int width, int height) const;
 };

@@ -14,6 +14,7 @@
 #include "silpose/base/progress.h"
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
+#include "silpose/image/keypoints3d.h"
 #include "silpose/image/mask.h"
 #include "silpose/image/seen_landmark.h"
 #include "silpose/segment/clean_up.h"
@@ -26,6 +27,7 @@ struct Segmentation {
   Mask mask;                                 // [H, W] the chosen blob
   ByteImage confidence = {};                 // [H, W] of each pixel, 255: sure; empty: sure everywhere
   std::vector<SeenLandmark> landmarks = {};  // where the segmenter knows of any
+  Keypoints3D keypoints = {};                // the same in space
   double trust = 1;                          // 0: nothing to go by; 1: as good as a given mask
   bool nothing_found = false;                // no blob counts
   bool touches_border = false;               // part of the subject may be outside the picture

@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "silpose/image/keypoints3d.h"
 #include "silpose/image/mask.h"
 #include "silpose/image/seen_landmark.h"
 
@@ -24,6 +25,7 @@ struct Observation {
   Box box;                    // its bounding box
   ByteImage confidence = {};  // of each pixel, 255: sure; empty: sure everywhere. Only the fitted filter looks at it.
   std::vector<SeenLandmark> landmarks = {};  // of the body; none from most segmenters
+  Keypoints3D keypoints = {};                // the same in space; empty from most segmenters
   Trust trust;
 };
 

@@ -113,7 +113,7 @@ class Problem {
       CoverageLikelihood::Scratch scratch(likelihood_);
       for (size_t t = begin; t < end; ++t) {
         NormalEquations equations = likelihood_.linearise(evidence_[t], blur, view(poses[t]), scratch);
-        costs[t] = equations.energy + plausibility_.add(poses[t], kRestWeight, equations.gradient, equations.hessian);
+        costs[t] = equations.energy + plausibility_.add(poses[t], {kRestWeight}, equations.gradient, equations.hessian);
         out.gradient[t] = equations.gradient.head(D);
         out.hessian[t] = equations.hessian.topLeftCorner(D, D);
         out.hessian[t].diagonal().array() += 1e-6;

@@ -35,7 +35,8 @@ FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const 
                            std::shared_ptr<const Plausibility> plausibility)
     : fine_(fine),
       mixture_(std::move(fine), coarse, std::move(plausibility), mixture_options(options)),
-      body_error_(coarse->body(), options.cameras, options.size_deviation) {}
+      body_error_(coarse->body(), options.cameras, options.size_deviation),
+      evidence_(options.evidence) {}
 
 void FittedFilter::start(std::span<const StartingPose> starts) {
   mixture_.start(poses_of(starts));
@@ -50,7 +51,7 @@ void FittedFilter::add(std::span<const StartingPose> starts) {
 
 FilterReport FittedFilter::step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) {
   const Stopwatch stopwatch;
-  CoverageEvidence evidence = fine_->prepare(observations, Blur::k8);
+  CoverageEvidence evidence = fine_->prepare(observations, Blur::k8, Blur::k2, evidence_);
   if (noise_.empty() || sought_) begin_noise(evidence);
   evidence.set_noise(noise_);
   mixture_.step(evidence, dt_s);

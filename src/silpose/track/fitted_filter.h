@@ -41,6 +41,7 @@ class FittedFilter final : public PoseFilter {
   MixtureFilter mixture_;
   ParticleSet particles_;
   BodyError body_error_;
+  EvidenceKind evidence_;
   BodyError::Variance from_body_;  // of the last estimate
   bool sought_ = false;            // hypotheses were added since the last step
   std::vector<double> noise_;      // [C]; empty until the first step

@@ -10,7 +10,6 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
-#include "silpose/motion/landmark_match.h"
 #include "silpose/track/limb_search.h"
 #include "silpose/track/picture_moves.h"
 #include "silpose/track/place_on_mask.h"
@@ -31,7 +30,7 @@ constexpr double kTwoAtOnce = 0.3;  // share of the random limbs that come in pa
 // does an E, after as many rounds, that is far more than is left elsewhere.
 constexpr double kStaleCost = 0.97, kHopelessRatio = 5, kHopeless = 100;
 constexpr int kStaleRounds = 2;
-constexpr double kContradicted = 20;  // by landmarks, more than the best start
+constexpr double kContradicted = 20;  // by keypoints, more than the best start
 
 // Loosely about a candidate: joints by half their range, the trunk's tilt by 20 degrees; where the body is, and which
 // way it faces, is free.
@@ -60,27 +59,10 @@ double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::spa
   return (root.rotation * Eigen::Vector3d::UnitZ()).dot((camera.centre_in_world() - root.translation).normalized());
 }
 
-std::vector<LandmarkMatch> match_landmarks(const BodyModel& body, std::span<const PinholeCamera> cameras,
-                                           std::span<const Observation> observations) {
-  std::vector<LandmarkMatch> matches;
-  for (size_t c = 0; c < observations.size(); ++c) {
-    LandmarkMatch match(body, cameras[c], observations[c]);
-    if (match.tells_pose()) matches.push_back(std::move(match));
-  }
-  return matches;
-}
-
-double cost_of(std::span<const LandmarkMatch> matches, std::span<const double> pose) {
-  double sum = 0;
-  for (const LandmarkMatch& match : matches) sum += match.cost(pose);
-  return sum;
-}
-
 struct Candidate {
   PosePrior prior;
   PoseFit fit;
-  double contradiction = 0;  // by landmarks, in units of cost
-  [[nodiscard]] double cost() const { return fit.cost() + contradiction; }
+  [[nodiscard]] double cost() const { return fit.cost(); }
 };
 
 // What candidates are fitted to.
@@ -88,9 +70,7 @@ struct Sight {
   const CoverageLikelihood& likelihood;
   const Plausibility& plausibility;
   const CoverageEvidence& evidence;
-  Eigen::Vector3d eye;                   // of the first camera with a say
-  std::vector<LandmarkMatch> landmarks;  // of cameras whose landmarks count
-  double landmark_allowance;
+  Eigen::Vector3d eye;  // of the first camera with a say
 
   [[nodiscard]] const BodyModel& body() const { return likelihood.body(); }
 };
@@ -101,8 +81,6 @@ void fit_all(const Sight& sight, std::span<const FitStage> stages, std::vector<C
     for (size_t i = begin; i < end; ++i) {
       Candidate& c = candidates[i];
       c.fit = fit_pose(sight.likelihood, sight.plausibility, sight.evidence, c.prior, c.fit.pose, stages, {}, scratch);
-      if (sight.landmarks.empty()) continue;
-      c.contradiction = std::max(0.0, cost_of(sight.landmarks, view(c.fit.pose)) - sight.landmark_allowance);
     }
   });
 }
@@ -221,20 +199,13 @@ void search_limbs(const Sight& sight, const InitialisationOptions& options, cons
 
 }  // namespace
 
-std::optional<double> landmark_cost(const BodyModel& body, std::span<const PinholeCamera> cameras,
-                                    std::span<const Observation> observations, std::span<const double> pose) {
-  const std::vector<LandmarkMatch> matches = match_landmarks(body, cameras, observations);
-  if (matches.empty()) return std::nullopt;
-  return cost_of(matches, pose);
-}
-
 std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
                                      std::span<const Observation> observations, const StateBatch& candidates,
                                      const InitialisationOptions& options) {
   check(candidates.rows() > 0, "initialise: no candidates");
   const BodyModel& body = likelihood.body();
   const Skeleton& skeleton = body.skeleton;
-  CoverageEvidence evidence = likelihood.prepare(observations);
+  CoverageEvidence evidence = likelihood.prepare(observations, Blur::k32, Blur::k2, options.evidence);
   const std::optional<size_t> seen = evidence.first_seen();
   check(seen.has_value(), "initialise: no camera has a say");
   const PinholeCamera& camera = likelihood.cameras()[*seen];
@@ -244,9 +215,9 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   for (size_t k = 0; k < starts.size(); ++k) {
     starts[k] = candidate_at(skeleton, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
   }
-  Sight sight{likelihood, plausibility, evidence, camera.centre_in_world(), {}, options.landmark_allowance.value_or(0)};
-  if (options.landmark_allowance) sight.landmarks = match_landmarks(body, likelihood.cameras(), observations);
-  const double facing_bonus = sight.landmarks.empty() ? options.facing_bonus : 0;
+  const Sight sight{likelihood, plausibility, evidence, camera.centre_in_world()};
+  const auto has_keypoints = [](const CoverageEvidence::View& view) { return view.keypoints != nullptr; };
+  const double facing_bonus = std::ranges::any_of(evidence.views, has_keypoints) ? 0 : options.facing_bonus;
   fit_all(sight, kCoarseStages, starts);
   sort_best_first(starts);
   std::array<int, 8> taken{};
@@ -305,9 +276,10 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
     return -0.5 * c.cost() + facing_bonus * faces_camera(body, camera, view(c.fit.pose));
   };
   std::ranges::stable_sort(starts, std::greater<>{}, log_likelihood);
-  // The filter goes by silhouettes alone: what they like as well and landmarks contradict must not be among it.
-  const double worst = starts.front().contradiction + kContradicted;
-  std::erase_if(starts, [&](const Candidate& c) { return c.contradiction > worst; });
+  // The filter may go by silhouettes alone: what they like as well and keypoints contradict must not be among it.
+  const auto keypoint_cost = [&](const Candidate& c) { return evidence.keypoint_cost(skeleton, view(c.fit.pose)); };
+  const double worst = keypoint_cost(starts.front()) + kContradicted;
+  std::erase_if(starts, [&](const Candidate& c) { return keypoint_cost(c) > worst; });
   std::vector<StartingPose> best;
   best.reserve(starts.size());
   for (const Candidate& start : starts) {

@@ -6,7 +6,6 @@
 // Threads: functions without state; all cores are used, and the result is the same on any number.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -31,19 +30,13 @@ struct InitialisationOptions {
   double merge_distance = 0.1;  // metres: starts whose every joint is nearer are one
   uint64_t seed = 1;
   double facing_bonus = 1;  // log-likelihood that facing the camera is worth; as much is lost by facing away
-  // Absent: silhouettes alone decide. Otherwise what the observations' landmarks contradict is worse, as far as its
-  // cost by them (motion/landmark_match.h) is above this, and facing means nothing.
-  std::optional<double> landmark_allowance;
+  EvidenceKind evidence = EvidenceKind::kSilhouette;  // where keypoints count, facing means nothing
 };
 
 struct StartingPose {
   std::vector<double> pose;   // [D] within the limits
-  double log_likelihood = 0;  // with the bonus, and the landmarks'
+  double log_likelihood = 0;  // with the bonus
 };
-
-// -2 log-likelihood of a pose [D] by the landmarks of all cameras; nothing where there are too few.
-std::optional<double> landmark_cost(const BodyModel& body, std::span<const PinholeCamera> cameras,
-                                    std::span<const Observation> observations, std::span<const double> pose);
 
 // Starting poses, best first; at least one. Shapes: one observation a camera; candidates [K, D], whose root translation
 // is replaced. REQUIRES: an observation in which something was found.

@@ -21,6 +21,7 @@ Observation observation_from(Segmentation segmentation) {
                        .area_jumped = segmentation.area_jumped};
   observation.mask = std::move(segmentation.mask);
   observation.landmarks = std::move(segmentation.landmarks);
+  observation.keypoints = std::move(segmentation.keypoints);
   observation.confidence = std::move(segmentation.confidence);
   for (uint8_t& sure : observation.confidence.pixels()) sure = static_cast<uint8_t>(kLeastSure + sure / 2);
   return observation;

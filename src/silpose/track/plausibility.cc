@@ -95,6 +95,7 @@ std::vector<FleshSphere> bounds_of(size_t num_joints, const std::vector<FleshSph
 Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : body_(std::move(body)) {
   check(body_ != nullptr, "Plausibility: no body");
   deviation_ = pose_deviation(body_->skeleton);
+  seen_deviation_ = pose_deviation(body_->skeleton, true);
   const Skeleton& skeleton = body_->skeleton;
   spheres_ = flesh_spheres(*body_);
   bounds_ = bounds_of(skeleton.joints().size(), spheres_);
@@ -183,10 +184,12 @@ double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, Ma
   return cost;
 }
 
-double Plausibility::add(const VectorXd& pose, double rest_weight, VectorXd& gradient, MatrixXd& hessian) const {
+double Plausibility::add(const VectorXd& pose, const RestPull& rest, VectorXd& gradient, MatrixXd& hessian) const {
   const PointMotion motion(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())});
   return add_limits(body_->skeleton, pose, gradient, hessian) +
-         (rest_weight > 0 ? add_rest(body_->skeleton, deviation_, rest_weight, pose, gradient, hessian) : 0) +
+         (rest.weight > 0 ? add_rest(body_->skeleton, rest.directions_seen ? seen_deviation_ : deviation_, rest.weight,
+                                     pose, gradient, hessian)
+                          : 0) +
          add_penetration(motion, gradient, hessian) + add_floor(motion, gradient, hessian);
 }
 

@@ -14,13 +14,18 @@
 
 namespace silpose {
 
+// How strongly poses are held near rest.
+struct RestPull {
+  double weight = 1;             // 1 for a single pose, less for one of many that are alike
+  bool directions_seen = false;  // of limbs, by keypoints: what is measured is held less (motion/noise.h)
+};
+
 class Plausibility {
  public:
   Plausibility(std::shared_ptr<const BodyModel> body, bool floor);
 
-  // Cost of a pose [D]; adds to `gradient` [D] and `hessian` [D, D] of half of it. `rest_weight` is that of the pull to
-  // rest: 1 for a single pose, less for one of many that are alike.
-  double add(const Eigen::VectorXd& pose, double rest_weight, Eigen::VectorXd& gradient,
+  // Cost of a pose [D]; adds to `gradient` [D] and `hessian` [D, D] of half of it.
+  double add(const Eigen::VectorXd& pose, const RestPull& rest, Eigen::VectorXd& gradient,
              Eigen::MatrixXd& hessian) const;
 
   // What may touch the floor: nothing without one.
@@ -42,7 +47,7 @@ class Plausibility {
   double add_floor(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
 
   std::shared_ptr<const BodyModel> body_;
-  std::vector<double> deviation_;  // [D] motion/noise.h's pose_deviation
+  std::vector<double> deviation_, seen_deviation_;  // [D] motion/noise.h's pose_deviation, without and with directions
   std::vector<FleshSphere> spheres_;
   std::vector<FleshSphere> bounds_;  // [J] a sphere about all spheres of a bone
   std::vector<BonePair> pairs_;

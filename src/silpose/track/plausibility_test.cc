@@ -29,7 +29,7 @@ VectorXd vector_of(const std::vector<double>& pose) {
 struct Added {
   explicit Added(const Plausibility& plausibility, const VectorXd& pose, double rest_weight = 0)
       : gradient(VectorXd::Zero(pose.size())), hessian(MatrixXd::Zero(pose.size(), pose.size())) {
-    cost = plausibility.add(pose, rest_weight, gradient, hessian);
+    cost = plausibility.add(pose, {rest_weight}, gradient, hessian);
   }
   VectorXd gradient;
   MatrixXd hessian;

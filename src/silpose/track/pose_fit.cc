@@ -34,7 +34,8 @@ Point evaluate(const CoverageLikelihood& likelihood, const Plausibility& plausib
   point.gradient += pull;
   point.hessian = std::move(equations.hessian);
   point.hessian += prior.information;
-  point.other_cost = plausibility.add(point.pose, rest_weight, point.gradient, point.hessian);
+  point.other_cost =
+      plausibility.add(point.pose, {rest_weight, evidence.has_directions()}, point.gradient, point.hessian);
   return point;
 }
 

@@ -166,15 +166,17 @@ class Problem {
       for (size_t t = begin; t < end; ++t) {
         at.gradient[t] = VectorXd::Zero(D);
         at.hessian[t] = MatrixXd::Zero(D, D);
+        bool directions_seen = false;
         if (seen_[t]) {
-          CoverageEvidence evidence = likelihood_.prepare(clip_[t].observations, blur, blur);
+          CoverageEvidence evidence = likelihood_.prepare(clip_[t].observations, blur, blur, options_.evidence);
+          directions_seen = evidence.has_directions();
           evidence.set_noise(noise_);
           NormalEquations equations = likelihood_.linearise(evidence, blur, view(poses[t]), scratch);
           costs[t] = equations.energy;
           at.gradient[t] = std::move(equations.gradient);
           at.hessian[t] = std::move(equations.hessian);
         }
-        costs[t] += plausibility_.add(poses[t], options_.rest_weight, at.gradient[t], at.hessian[t]);
+        costs[t] += plausibility_.add(poses[t], {options_.rest_weight, directions_seen}, at.gradient[t], at.hessian[t]);
       }
     });
     for (const double cost : costs) at.cost += cost;

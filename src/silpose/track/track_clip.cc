@@ -14,6 +14,7 @@
 #include "silpose/motion/noise.h"
 #include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
+#include "silpose/track/keypoint_sides.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/smoother.h"
@@ -47,12 +48,35 @@ struct Possible {
   static auto members(auto& p) { return std::tie(p.poses, p.velocities); }
 };
 
+// The clip without the keypoints of frames in which the network exchanged left and right; empty where it never did.
+std::vector<ClipInstant> without_exchanged(std::span<const ClipInstant> clip) {
+  std::vector<ClipInstant> judged;
+  const size_t num_cameras = clip.empty() ? 0 : clip.front().observations.size();
+  std::vector<int64_t> times;
+  times.reserve(clip.size());
+  for (const ClipInstant& instant : clip) times.push_back(instant.time_ns);
+  for (size_t c = 0; c < num_cameras; ++c) {
+    std::vector<const Keypoints3D*> keypoints;
+    keypoints.reserve(clip.size());
+    for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints);
+    const std::vector<double> exchanged = exchanged_sides(keypoints, times);
+    for (size_t t = 0; t < clip.size(); ++t) {
+      if (exchanged[t] <= kExchanged) continue;
+      if (judged.empty()) judged.assign(clip.begin(), clip.end());
+      judged[t].observations[c].keypoints = {};
+      judged[t].observations[c].landmarks.clear();
+    }
+  }
+  return judged;
+}
+
 class ClipTracker {
  public:
   ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress,
               const ClipResume& resume)
       : options_(options.resolved()),
-        clip_(clip),
+        judged_(without_exchanged(clip)),
+        clip_(judged_.empty() ? clip : judged_),
         progress_(progress),
         resume_(resume),
         possible_(clip.size()),
@@ -87,7 +111,7 @@ class ClipTracker {
     const SmoothedPoses smoothed = smooth_poses(
         *likelihood_, *plausibility_, clip_.subspan(first_, last_ - first_ + 1),
         {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
-        best_path(), {.noise = noise_}, [&] { return proceed(); });
+        best_path(), {.evidence = options_.evidence, .noise = noise_}, [&] { return proceed(); });
     if (stopped_) return tell_and_stop();
     noise_ = smoothed.noise;
     return reports(smoothed);
@@ -126,8 +150,7 @@ class ClipTracker {
     const Plausibility plausibility(body, *options_.floor);
     double best = -std::numeric_limits<double>::infinity();
     size_t chosen = starts.front();
-    InitialisationOptions search{.seed = options_.seed};
-    if (options_.landmarks) search.landmark_allowance = 0;
+    const InitialisationOptions search{.seed = options_.seed, .evidence = start_evidence(options_)};
     for (const size_t t : starts) {
       if (!proceed()) break;
       Rng rng(options_.seed, t);
@@ -247,7 +270,7 @@ class ClipTracker {
   }
 
   CoverageEvidence evidence_at(size_t t) const {
-    CoverageEvidence evidence = likelihood_->prepare(clip_[t].observations, Blur::k4, Blur::k4);
+    CoverageEvidence evidence = likelihood_->prepare(clip_[t].observations, Blur::k4, Blur::k4, options_.evidence);
     evidence.set_noise(noise_);
     return evidence;
   }
@@ -341,6 +364,7 @@ class ClipTracker {
   static constexpr double kTransitionCap = 30;   // of one DOF
 
   TrackerOptions options_;
+  std::vector<ClipInstant> judged_;  // where keypoints had to go
   std::span<const ClipInstant> clip_;
   const ClipProgress& progress_;
   const ClipResume& resume_;

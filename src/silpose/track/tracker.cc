@@ -12,6 +12,7 @@
 #include "silpose/render/silhouette.h"
 #include "silpose/segment/background_segmenter.h"
 #include "silpose/track/initialisation.h"
+#include "silpose/track/keypoint_sides.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/pose_filter.h"
 
@@ -31,11 +32,14 @@ constexpr double kFirstSeek_s = 0.12, kSeekLater = 4;  // times the interval bef
 constexpr double kLeastLost = 0.03, kLostDeviations = 3, kOfLate_s = 1;
 constexpr int kSeekHeadings = 3, kSeekRounds = 2, kSeekPatience = 2;  // at a time, other headings each time
 constexpr double kSeekShare = 0.5;                                    // of other limbs that are fitted finely
+// What was tracked turns no further than this (cosine of 70 degrees) when it is sought anew, unless keypoints have
+// faced elsewhere for about this long.
+constexpr double kTurnedCosine = 0.34, kFacingMemory_s = 0.5;
 
 }  // namespace
 
 struct Tracker::Impl {
-  explicit Impl(const TrackerOptions& given) : options(given.resolved()) {
+  explicit Impl(const TrackerOptions& given) : options(given.resolved()), sides(given.cameras.size()) {
     options.check();
     const auto fine = level_of_detail(options.body, *options.lod_vertices);
     likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
@@ -66,8 +70,8 @@ struct Tracker::Impl {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
     }
-    InitialisationOptions search{.seed = options.seed + static_cast<uint64_t>(steps)};
-    if (options.landmarks) search.landmark_allowance = 0;
+    InitialisationOptions search{.seed = options.seed + static_cast<uint64_t>(steps),
+                                 .evidence = start_evidence(options)};
     if (started) {
       search.num_headings = kSeekHeadings;
       search.num_rounds = kSeekRounds;
@@ -75,13 +79,54 @@ struct Tracker::Impl {
       if (num_seeks % 2 == 1) search.num_distant_rounds = 0;  // every other time
       search.share_fitted_finely = kSeekShare;
       search.first_heading = kSeekHeadings * num_seeks;
-      // In some frame of a clip landmarks are wrong as a whole: they hinder what they contradict more than what is
-      // tracked, and no more.
-      if (options.landmarks) {
-        search.landmark_allowance = landmark_cost(*options.body, options.cameras, observations, last_pose);
-      }
     }
     return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, search);
+  }
+
+  // A camera whose network exchanged left and right tells nothing by its keypoints. Empty where none did.
+  std::vector<Observation> without_exchanged(std::span<const Observation> observations, double dt_s) {
+    std::vector<Observation> judged;
+    for (size_t c = 0; c < observations.size(); ++c) {
+      if (sides[c].step(observations[c].keypoints, dt_s) <= kExchanged) continue;
+      if (judged.empty()) judged.assign(observations.begin(), observations.end());
+      judged[c].keypoints = {};
+      judged[c].landmarks.clear();
+    }
+    return judged;
+  }
+
+  // From right to left across hips and shoulders of a pose, in the world; zero for a body without.
+  Eigen::Vector3d line_across_pose(std::span<const double> pose) const {
+    const Skeleton& skeleton = options.body->skeleton;
+    const std::vector<Rigid3> joints = skeleton.forward_kinematics(pose);
+    Eigen::Vector3d line = Eigen::Vector3d::Zero();
+    for (const auto& [right, left] : {std::pair{"right_thigh", "left_thigh"}, {"right_upper_arm", "left_upper_arm"}}) {
+      const std::optional<int> a = skeleton.find_joint(right), b = skeleton.find_joint(left);
+      if (!a || !b) return Eigen::Vector3d::Zero();
+      line += joints[static_cast<size_t>(*b)].translation - joints[static_cast<size_t>(*a)].translation;
+    }
+    return line.stableNormalized();
+  }
+
+  // How well the estimate faces where the keypoints do, over the last frames.
+  void follow_facing(std::span<const Observation> observations, double dt_s) {
+    const Eigen::Vector3d tracked = line_across_pose(last_pose);
+    for (size_t c = 0; c < observations.size(); ++c) {
+      const std::optional<Eigen::Vector3d> seen = line_across(observations[c].keypoints);
+      if (!seen) continue;
+      const double agreement = tracked.dot(world_from_keypoints(options.cameras[c], observations[c].keypoints) * *seen);
+      facing_agreement += std::min(dt_s / kFacingMemory_s, 1.0) * (agreement - facing_agreement);
+      return;
+    }
+  }
+
+  // Whether a pose faces elsewhere than the estimate, and keypoints do not say so.
+  bool is_turned(std::span<const Observation> observations, const StartingPose& start) const {
+    const auto has_keypoints = [](const Observation& o) { return line_across(o.keypoints).has_value(); };
+    if (options.evidence == EvidenceKind::kSilhouette || std::ranges::none_of(observations, has_keypoints))
+      return false;
+    return facing_agreement > kTurnedCosine &&
+           line_across_pose(start.pose).dot(line_across_pose(last_pose)) < kTurnedCosine;
   }
 
   void summarise(std::span<const Observation> observations, StepReport& report) {
@@ -109,7 +154,9 @@ struct Tracker::Impl {
     accuracy_of_late -= share * lost;
     if (!options.num_hypotheses || report.visual_accuracy >= kGoodAccuracy || since_seek_s < seek_interval_s) return;
     const Stopwatch stopwatch;
-    filter->add(starting_poses(observations));
+    std::vector<StartingPose> found = starting_poses(observations);
+    std::erase_if(found, [&](const StartingPose& start) { return is_turned(observations, start); });
+    if (!found.empty()) filter->add(found);
     ++num_seeks;
     since_seek_s = 0;
     seek_interval_s *= kSeekLater;
@@ -119,7 +166,7 @@ struct Tracker::Impl {
   // All that goes from step to step but the filter's own.
   static auto members(auto& t) {
     return std::tie(t.last_pose, t.started, t.num_seeks, t.seek_interval_s, t.since_seek_s, t.accuracy_of_late,
-                    t.deviation_of_late, t.steps, t.last_time_ns, t.last_seen_ns);
+                    t.deviation_of_late, t.steps, t.last_time_ns, t.last_seen_ns, t.sides, t.facing_agreement);
   }
 
   TrackerOptions options;
@@ -133,6 +180,8 @@ struct Tracker::Impl {
   int num_seeks = 0;
   double seek_interval_s = kFirstSeek_s, since_seek_s = 0, accuracy_of_late = 0, deviation_of_late = 0;
   int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
+  std::vector<KeypointSides> sides;  // [C]
+  double facing_agreement = 1;       // cosine between where the estimate and the keypoints face
 };
 
 Tracker::Tracker(const TrackerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
@@ -140,18 +189,20 @@ Tracker::~Tracker() = default;
 Tracker::Tracker(Tracker&&) noexcept = default;
 Tracker& Tracker::operator=(Tracker&&) noexcept = default;
 
-StepReport Tracker::step(std::span<const Observation> observations, int64_t frame_idx, int64_t time_ns) {
+StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, int64_t time_ns) {
   Impl& t = *impl_;
-  check(observations.size() == t.options.cameras.size(), "Tracker: {} observations for {} cameras", observations.size(),
+  check(given.size() == t.options.cameras.size(), "Tracker: {} observations for {} cameras", given.size(),
         t.options.cameras.size());
   check(t.steps == 0 || time_ns > t.last_time_ns, "Tracker: time {} ns does not come after {} ns", time_ns,
         t.last_time_ns);
   StepReport report{.frame_idx = frame_idx, .time_ns = time_ns};
-  for (const Observation& observation : observations) {
+  for (const Observation& observation : given) {
     report.trust.push_back(observation.trust);
     report.observed.push_back(observation.mask);
   }
   const double dt_s = t.steps == 0 ? 0 : static_cast<double>(time_ns - t.last_time_ns) * 1e-9;
+  const std::vector<Observation> judged = t.without_exchanged(given, dt_s);
+  const std::span<const Observation> observations = judged.empty() ? given : std::span(judged);
   const bool seen = any_has_a_say(observations);
   if (seen && t.started && static_cast<double>(time_ns - t.last_seen_ns) * 1e-9 > kLongestCoast_s) t.started = false;
 
@@ -172,6 +223,7 @@ StepReport Tracker::step(std::span<const Observation> observations, int64_t fram
     report.effective_sample_size = t.filter->coast(dt_s).effective_sample_size;
   }
   if (t.started) t.summarise(observations, report);
+  if (t.started && seen) t.follow_facing(observations, dt_s);
   const bool is_new = report.state == StepReport::State::kInitialised;
   if (t.started && seen) t.seek_anew(observations, is_new ? 0 : dt_s, report);
 

@@ -5,8 +5,8 @@
 #include "silpose/base/check.h"
 #include "silpose/filter/resampling.h"
 #include "silpose/motion/common_poses.h"
-#include "silpose/motion/landmark_proposal.h"
 #include "silpose/motion/motion_model.h"
+#include "silpose/track/landmark_proposal.h"
 
 namespace silpose {
 
@@ -83,6 +83,11 @@ void TrackerOptions::check() const {
   const auto num_dofs = static_cast<size_t>(body->skeleton.num_dofs());
   require(!initial_pose || initial_pose->size() == num_dofs,
           fmt::format("initial pose of {} numbers for {} DOF", initial_pose ? initial_pose->size() : 0, num_dofs));
+}
+
+EvidenceKind start_evidence(const TrackerOptions& options) {
+  if (options.evidence == EvidenceKind::kKeypoints) return options.evidence;
+  return options.landmarks ? EvidenceKind::kBoth : EvidenceKind::kSilhouette;
 }
 
 std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options) {

@@ -10,6 +10,7 @@
 
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
+#include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/motion/proposal.h"
 
 namespace silpose {
@@ -42,8 +43,8 @@ struct TrackerOptions {
   std::optional<int> lod_vertices;  // of the mesh that is compared, smoothed clips: in the end; 0: the body's own
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
-  // Starts agree with the observations' landmarks where there are any, and what is sought anew no less than what was
-  // tracked; all else is by silhouettes alone.
+  // What poses are compared by while they are tracked, and whether starts go by keypoints, too, where there are any.
+  EvidenceKind evidence = EvidenceKind::kSilhouette;
   bool landmarks = false;
   std::shared_ptr<const Proposal> proposal;  // candidates for the start and for regeneration; absent: common poses
 
@@ -53,6 +54,9 @@ struct TrackerOptions {
   // The same with everything unset filled in from the preset.
   [[nodiscard]] TrackerOptions resolved() const;
 };
+
+// What starts are compared by.
+EvidenceKind start_evidence(const TrackerOptions& options);
 
 // Candidates for the start: fitted to landmarks where these count, else the options' proposal, else the common poses.
 std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options);

@@ -1,4 +1,4 @@
-#include "silpose/motion/landmark_match.h"
+#include "silpose/track/landmark_proposal.h"
 
 #include <gtest/gtest.h>
 
@@ -6,12 +6,11 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/body/human.h"
-#include "silpose/motion/landmark_proposal.h"
 
 namespace silpose {
 namespace {
 
-class LandmarkMatchTest : public testing::Test {
+class LandmarkProposalTest : public testing::Test {
  protected:
   static std::shared_ptr<const BodyModel> human() {
     static const auto body = std::make_shared<const BodyModel>(
@@ -56,44 +55,7 @@ class LandmarkMatchTest : public testing::Test {
   PinholeCamera camera_ = default_camera(640, 480);
 };
 
-TEST_F(LandmarkMatchTest, DerivativeIsThatOfTheCost) {
-  std::vector<double> pose = standing(0.4);
-  const Observation seen = see(pose, 3);
-  const LandmarkMatch match(*body_, camera_, seen);
-  for (size_t d = 0; d < pose.size(); ++d) pose[d] += 0.02 * static_cast<double>(d % 5);
-  const Eigen::Index D = std::ssize(pose);
-  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(D);
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(D, D);
-  EXPECT_NEAR(match.add(pose, gradient, hessian), match.cost(pose), 1e-9);
-  constexpr double kStep = 1e-6;
-  for (size_t d = 0; d < pose.size(); ++d) {
-    std::vector<double> more = pose, less = pose;
-    more[d] += kStep, less[d] -= kStep;
-    const double expected = (match.cost(more) - match.cost(less)) / (2 * kStep) / 2;  // add() gives that of half
-    EXPECT_NEAR(gradient[static_cast<Eigen::Index>(d)], expected, 1e-3 * (1 + std::abs(expected))) << d;
-  }
-}
-
-TEST_F(LandmarkMatchTest, FrontIsToldFromBackAndLeftFromRight) {
-  const std::vector<double> truth = standing(0);
-  const Observation seen = see(truth, 2);
-  const LandmarkMatch match(*body_, camera_, seen);
-  EXPECT_GT(match.cost(standing(kPi)), match.cost(truth) + 40);
-}
-
-TEST_F(LandmarkMatchTest, CountsOnlyWhatIsSeenAndTheBodyHas) {
-  Observation seen = see(standing(0));
-  const size_t all = LandmarkMatch(*body_, camera_, seen).size();
-  EXPECT_EQ(all, seen.landmarks.size());
-  seen.landmarks[0].visibility = 0.2;
-  seen.landmarks[1].x = -3;
-  seen.landmarks[2].name = "tail";
-  EXPECT_EQ(LandmarkMatch(*body_, camera_, seen).size(), all - 3);
-  seen.landmarks.resize(8);
-  EXPECT_FALSE(LandmarkMatch(*body_, camera_, seen).tells_pose());
-}
-
-TEST_F(LandmarkMatchTest, ProposesThePoseThatIsSeen) {
+TEST_F(LandmarkProposalTest, ProposesThePoseThatIsSeen) {
   const LandmarkProposal proposal(body_, camera_);
   for (const double heading : {0.3, 2.0, -1.2, 3.1}) {
     std::vector<double> truth = standing(heading);
@@ -111,7 +73,7 @@ TEST_F(LandmarkMatchTest, ProposesThePoseThatIsSeen) {
   }
 }
 
-TEST_F(LandmarkMatchTest, WithoutLandmarksTheCommonPosesAreProposed) {
+TEST_F(LandmarkProposalTest, WithoutLandmarksTheCommonPosesAreProposed) {
   Observation seen = see(standing(0));
   seen.landmarks.clear();
   Rng rng(1, 0, 0);

@@ -1,4 +1,4 @@
-#include "silpose/motion/landmark_proposal.h"
+#include "silpose/track/landmark_proposal.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "silpose/base/check.h"
 #include "silpose/base/levenberg.h"
 #include "silpose/base/parallel.h"
-#include "silpose/motion/landmark_match.h"
+#include "silpose/likelihood/keypoint_term.h"
 #include "silpose/motion/noise.h"
 
 namespace silpose {
@@ -32,13 +32,15 @@ struct Fit {
 // How a pose agrees with the landmarks, and with how people hold themselves.
 class Problem {
  public:
-  Problem(const BodyModel& body, const LandmarkMatch& match)
-      : skeleton_(body.skeleton), match_(match), deviation_(pose_deviation(body.skeleton)) {}
+  Problem(const BodyModel& body, const KeypointTerm& term)
+      : skeleton_(body.skeleton),
+        term_(term),
+        deviation_(pose_deviation(body.skeleton, term.num_directions() > 0)) {}
 
   [[nodiscard]] Fit at(Eigen::VectorXd pose) const {
     const Eigen::Index D = pose.size();
     Fit fit{std::move(pose), 0, Eigen::VectorXd::Zero(D), Eigen::MatrixXd::Zero(D, D)};
-    fit.sum = match_.add({fit.pose.data(), static_cast<size_t>(D)}, fit.gradient, fit.hessian);
+    fit.sum = term_.add(skeleton_, {fit.pose.data(), static_cast<size_t>(D)}, 1, fit.gradient, fit.hessian);
     for (Eigen::Index d = 0; d < D; ++d) {
       const double deviation = deviation_[static_cast<size_t>(d)];
       if (deviation == 0) continue;
@@ -68,7 +70,7 @@ class Problem {
 
  private:
   const Skeleton& skeleton_;
-  const LandmarkMatch& match_;
+  const KeypointTerm& term_;
   std::vector<double> deviation_;
 };
 
@@ -79,8 +81,8 @@ LandmarkProposal::LandmarkProposal(std::shared_ptr<const BodyModel> body, const 
 
 StateBatch LandmarkProposal::propose(const Observation& observation, int num_candidates, Rng& rng) const {
   check(num_candidates >= 0, "LandmarkProposal: {} candidates", num_candidates);
-  const LandmarkMatch match(*body_, camera_, observation);
-  if (!match.tells_pose() || observation.box.empty()) return common_.propose(observation, num_candidates, rng);
+  const KeypointTerm term(*body_, camera_, observation, {.places = 1});
+  if (!term.tells_pose() || observation.box.empty()) return common_.propose(observation, num_candidates, rng);
 
   // As far away as a body of that size is, in the middle of the mask.
   const Box& box = observation.box;
@@ -88,7 +90,7 @@ StateBatch LandmarkProposal::propose(const Observation& observation, int num_can
   const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
   const Eigen::Vector3d root =
       camera_.cam_from_world.inverse() * Eigen::Vector3d(camera_.ray_from_pixel(middle) * depth);
-  const Problem problem(*body_, match);
+  const Problem problem(*body_, term);
   const StateBatch& poses = common_.poses();
   std::vector<Fit> fits(static_cast<size_t>(poses.rows()));
   parallel_for(fits.size(), 4, [&](size_t begin, size_t end) {

@@ -1,4 +1,4 @@
-// LandmarkProposal: poses that agree with the landmarks that were found in the picture. The common poses are fitted to
+// LandmarkProposal: poses that agree with the keypoints that were found in the image. The common poses are fitted to
 // them; where there are no landmarks, it is the common poses that are proposed.
 // Threads: as Proposal.
 #pragma once

@@ -1,0 +1,82 @@
+// KeypointTerm: how well poses agree with the keypoints that a network found in one camera's image. Two kinds of
+// evidence, both robust:
+//   - directions of limb segments in space (shoulder to elbow, hip to knee, ...), which tell what a silhouette cannot:
+//     depth, front from back, left from right. Residual: the pose's unit vector minus the network's.
+//   - places in the image, at a low weight: networks and bodies do not mean quite the same by a joint.
+// Based on: Student's t by its weights (references.bib: lange1989); the network is BlazePose (bazarevsky2020).
+// Threads: constant after construction.
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "silpose/body/body_model.h"
+#include "silpose/geometry/camera.h"
+#include "silpose/shape/observation.h"
+
+namespace silpose {
+
+struct KeypointWeights {
+  double directions = 1.25;  // [tuned: nine takes of five people; 1 to 1.5 are alike]
+  double places = 0.3;       // [tuned on the same]
+};
+
+// The rotation from the axes of the keypoints to the world's.
+Eigen::Matrix3d world_from_keypoints(const PinholeCamera& camera, const Keypoints3D& keypoints);
+
+class KeypointTerm {
+ public:
+  // Of the keypoints that the body has by name. Directions are those of segments whose two ends are among them.
+  KeypointTerm(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
+               const KeypointWeights& weights = {});
+
+  [[nodiscard]] size_t num_places() const { return places_.size(); }
+  [[nodiscard]] size_t num_directions() const { return directions_.size(); }
+  [[nodiscard]] bool empty() const { return places_.empty() && directions_.empty(); }
+  // Too few of them tell nothing of the whole body.
+  [[nodiscard]] bool tells_pose() const { return places_.size() >= 6; }
+
+  // -2 log-likelihood of a pose [D], up to a constant. `skeleton` has the joints of the body, and perhaps more DOF.
+  [[nodiscard]] double cost(const Skeleton& skeleton, std::span<const double> pose) const;
+
+  // `trust` times the same; adds to `gradient` [D] and `hessian` [D, D] of half of it (Gauss-Newton).
+  double add(const Skeleton& skeleton, std::span<const double> pose, double trust, Eigen::VectorXd& gradient,
+             Eigen::MatrixXd& hessian) const;
+
+ private:
+  struct Point {
+    int joint_idx = 0;
+    Eigen::Vector3d x_in_joint = Eigen::Vector3d::Zero();
+  };
+  struct Place {
+    size_t point = 0;
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();
+    double weight = 1;
+  };
+  // Of the vector sum_i factor_i x_i.
+  struct End {
+    size_t point = 0;
+    double factor = 1;
+  };
+  struct Direction {
+    std::vector<End> ends;
+    Eigen::Vector3d observed = Eigen::Vector3d::Zero();  // unit, in the axes of the ray
+    Eigen::Vector3d inverse_deviation = Eigen::Vector3d::Zero();
+    double weight = 1;
+  };
+  std::optional<size_t> point_of(const BodyModel& body, std::string_view name);
+  void add_places(const BodyModel& body, const Observation& observation, double weight);
+  void add_directions(const BodyModel& body, const Keypoints3D& keypoints, double weight);
+
+  PinholeCamera camera_;
+  std::vector<Point> points_;
+  std::vector<Place> places_;
+  std::vector<Direction> directions_;
+  Eigen::Matrix3d ray_from_world_ = Eigen::Matrix3d::Identity();  // z: the ray at which the network looked
+  double deviation_px_ = 1;
+};
+
+}  // namespace silpose

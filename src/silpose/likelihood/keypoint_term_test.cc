@@ -1,0 +1,160 @@
+#include "silpose/likelihood/keypoint_term.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "silpose/base/rng.h"
+#include "silpose/body/human.h"
+
+namespace silpose {
+namespace {
+
+class KeypointTermTest : public testing::Test {
+ protected:
+  static std::shared_ptr<const BodyModel> human() {
+    static const auto body = std::make_shared<const BodyModel>(
+        build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value());
+    return body;
+  }
+
+  int dof(const char* name) const { return body_->skeleton.find_dof(name).value(); }
+
+  std::vector<double> standing(double heading) const {
+    std::vector<double> pose(static_cast<size_t>(body_->skeleton.num_dofs()), 0.0);
+    pose[static_cast<size_t>(dof("root_ty"))] = 0.95;
+    pose[static_cast<size_t>(dof("root_ry"))] = heading;
+    return pose;
+  }
+
+  // All joints and end points, off by a deviation of `noise_px`; a mask as large as the body.
+  Observation see(const std::vector<double>& pose, double noise_px = 0) const {
+    Observation seen{Mask(camera_.width, camera_.height)};
+    const auto names = landmark_names(*body_);
+    const auto positions = landmark_positions(*body_, pose);
+    Rng rng(3, 0, 0);
+    Eigen::Vector2d least(1e9, 1e9), most(-1e9, -1e9);
+    for (size_t i = 0; i < names.size(); ++i) {
+      const Eigen::Vector2d pixel =
+          camera_.project(positions[i]).value() + noise_px * Eigen::Vector2d(rng.normal(), rng.normal());
+      seen.landmarks.push_back({names[i], pixel.x(), pixel.y()});
+      least = least.cwiseMin(pixel), most = most.cwiseMax(pixel);
+    }
+    const double height = most.y() - least.y();
+    seen.box = {static_cast<int>(least.x()), static_cast<int>(least.y()), static_cast<int>(most.x() - least.x()),
+                static_cast<int>(height)};
+    const int width = static_cast<int>(height / 10);  // of a box that covers a tenth of the height squared
+    const int middle = seen.box.x + seen.box.width / 2;
+    for (int y = seen.box.y; y < seen.box.y + seen.box.height; ++y) {
+      for (int x = middle - width / 2; x < middle - width / 2 + width; ++x) seen.mask.set(x, y);
+    }
+    return seen;
+  }
+
+  // The same points in space, as a network has them that looks straight at the middle of the body.
+  void add_keypoints(const std::vector<double>& pose, Observation& seen) const {
+    const auto names = landmark_names(*body_);
+    const auto positions = landmark_positions(*body_, pose);
+    const Box& box = seen.box;
+    seen.keypoints = {box.x + 0.5 * box.width, box.y + 0.5 * box.height, {}};
+    const Eigen::Matrix3d keypoints_from_world = world_from_keypoints(camera_, seen.keypoints).transpose();
+    for (size_t i = 0; i < names.size(); ++i) {
+      const Eigen::Vector3d x = keypoints_from_world * (positions[i] - positions[0]);
+      seen.keypoints.points.push_back({names[i], {x.x(), x.y(), x.z()}});
+    }
+  }
+
+  std::shared_ptr<const BodyModel> body_ = human();
+  PinholeCamera camera_ = default_camera(640, 480);
+};
+
+TEST_F(KeypointTermTest, DerivativeIsThatOfTheCost) {
+  std::vector<double> pose = standing(0.4);
+  Observation seen = see(pose, 3);
+  add_keypoints(pose, seen);
+  const KeypointTerm term(*body_, camera_, seen);
+  EXPECT_EQ(term.num_directions(), 11u);
+  for (size_t d = 0; d < pose.size(); ++d) pose[d] += 0.02 * static_cast<double>(d % 5);
+  const Eigen::Index D = std::ssize(pose);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(D);
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(D, D);
+  EXPECT_NEAR(term.add(body_->skeleton, pose, 1, gradient, hessian), term.cost(body_->skeleton, pose), 1e-9);
+  constexpr double kStep = 1e-6;
+  for (size_t d = 0; d < pose.size(); ++d) {
+    std::vector<double> more = pose, less = pose;
+    more[d] += kStep, less[d] -= kStep;
+    const double expected = (term.cost(body_->skeleton, more) - term.cost(body_->skeleton, less)) / (2 * kStep) /
+                            2;  // add() gives that of half
+    EXPECT_NEAR(gradient[static_cast<Eigen::Index>(d)], expected, 1e-3 * (1 + std::abs(expected))) << d;
+  }
+}
+
+TEST_F(KeypointTermTest, FrontIsToldFromBackAndLeftFromRight) {
+  const std::vector<double> truth = standing(0);
+  const Observation seen = see(truth, 2);
+  const KeypointTerm term(*body_, camera_, seen, {.places = 1});
+  EXPECT_GT(term.cost(body_->skeleton, standing(kPi)), term.cost(body_->skeleton, truth) + 40);
+}
+
+TEST_F(KeypointTermTest, CountsOnlyWhatIsSeenAndTheBodyHas) {
+  Observation seen = see(standing(0));
+  const size_t all = KeypointTerm(*body_, camera_, seen).num_places();
+  EXPECT_EQ(all, seen.landmarks.size());
+  seen.landmarks[0].visibility = 0.2;
+  seen.landmarks[1].x = -3;
+  seen.landmarks[2].name = "tail";
+  EXPECT_EQ(KeypointTerm(*body_, camera_, seen).num_places(), all - 3);
+  seen.landmarks.resize(8);
+  EXPECT_FALSE(KeypointTerm(*body_, camera_, seen).tells_pose());
+}
+
+// A silhouette hardly changes when a forearm points at the camera instead of away from it; its direction does.
+TEST_F(KeypointTermTest, DirectionsTellDepth) {
+  std::vector<double> truth = standing(0.1), mirrored;
+  const auto elbow = static_cast<size_t>(dof("left_forearm_rx")), arm = static_cast<size_t>(dof("left_upper_arm_rx"));
+  truth[elbow] = 1.2;
+  mirrored = truth;
+  mirrored[arm] = -0.9, mirrored[elbow] = 0.4;
+  Observation seen = see(truth);
+  add_keypoints(truth, seen);
+  const KeypointTerm places(*body_, camera_, seen, {.directions = 0, .places = 0.3}), both(*body_, camera_, seen);
+  const auto worse = [&](const KeypointTerm& term) {
+    return term.cost(body_->skeleton, mirrored) - term.cost(body_->skeleton, truth);
+  };
+  EXPECT_GT(worse(both), worse(places) + 10);
+}
+
+TEST_F(KeypointTermTest, DirectionsDoNotDependOnTheSizeOfTheBodyNorOnWhereItStands) {
+  const std::vector<double> truth = standing(0.7);
+  Observation seen = see(truth);
+  add_keypoints(truth, seen);
+  const KeypointTerm term(*body_, camera_, seen, {.places = 0});
+  for (Keypoint3D& point : seen.keypoints.points) {
+    for (double& x : point.x) x *= 1.3;
+  }
+  const KeypointTerm larger(*body_, camera_, seen, {.places = 0});
+  std::vector<double> elsewhere = truth;
+  elsewhere[0] += 0.5, elsewhere[2] -= 1;
+  EXPECT_NEAR(larger.cost(body_->skeleton, truth), term.cost(body_->skeleton, truth), 1e-9);
+  EXPECT_NEAR(term.cost(body_->skeleton, elsewhere), term.cost(body_->skeleton, truth), 1e-9);
+}
+
+TEST_F(KeypointTermTest, AWildKeypointCostsLittleMoreThanABadOne) {
+  const std::vector<double> truth = standing(0);
+  Observation seen = see(truth);
+  add_keypoints(truth, seen);
+  const double good = KeypointTerm(*body_, camera_, seen).cost(body_->skeleton, truth);
+  for (Keypoint3D& point : seen.keypoints.points) {
+    if (point.name == "left_hand") point.x[2] += 0.3;
+  }
+  const double bad = KeypointTerm(*body_, camera_, seen).cost(body_->skeleton, truth);
+  for (Keypoint3D& point : seen.keypoints.points) {
+    if (point.name == "left_hand") point.x[2] += 30;
+  }
+  const double wild = KeypointTerm(*body_, camera_, seen).cost(body_->skeleton, truth);
+  EXPECT_GT(bad, good + 2);
+  EXPECT_LT(wild, good + 3 * (bad - good));
+}
+
+}  // namespace
+}  // namespace silpose

@@ -1,0 +1,45 @@
+// KeypointSides: whether a network took a body's left for its right. A network sees each image by itself; from behind,
+// or from the side, it may exchange the sides for some frames, and mirror the depth of the whole body with them. A body
+// does not turn half round from one frame to the next: two states, exchanged or not, are followed over time by the
+// line across hips and shoulders.
+// Based on: the forward and backward pass of a hidden Markov model (references.bib: rabiner1989).
+// Threads: values and functions without state.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "silpose/image/keypoints3d.h"
+
+namespace silpose {
+
+// From right to left across hips and shoulders, a unit vector in the axes of the keypoints; nothing where they lack
+// these.
+std::optional<Eigen::Vector3d> line_across(const Keypoints3D& keypoints);
+
+// Frame by frame, as an online tracker sees them.
+class KeypointSides {
+ public:
+  // The probability that the sides are exchanged in the next frame's keypoints, `dt_s` seconds after those before. 0
+  // where there are none.
+  double step(const Keypoints3D& keypoints, double dt_s);
+
+  static auto members(auto& s) { return std::tie(s.exchanged_, s.last_, s.since_last_s_); }
+
+ private:
+  double exchanged_ = 0;
+  std::optional<Eigen::Vector3d> last_;
+  double since_last_s_ = 0;
+};
+
+// The same for all frames of a clip at once, by what comes before and after. Shapes: keypoints and times [T] -> [T].
+std::vector<double> exchanged_sides(std::span<const Keypoints3D* const> keypoints, std::span<const int64_t> times_ns);
+
+// More probable than this: what the keypoints say is not used.
+inline constexpr double kExchanged = 0.5;
+
+}  // namespace silpose
