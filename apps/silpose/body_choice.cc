@@ -37,6 +37,19 @@ std::string file_name_of(std::string model) {
   return model + ".body";
 }
 
+// True when `body_file` is there and neither the program nor the body data is newer.
+bool is_up_to_date(const fs::path& body_file) {
+  std::error_code failed;
+  const auto made = fs::last_write_time(body_file, failed);
+  if (failed) return false;
+  for (const fs::path& source :
+       {fs::read_symlink("/proc/self/exe", failed), data_directory() / "makehuman/SHA256SUMS"}) {
+    const auto changed = fs::last_write_time(source, failed);
+    if (!failed && changed > made) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 CLI::Validator is_model() {
@@ -72,16 +85,11 @@ fs::path data_directory() {
   return program.parent_path().parent_path() / "share" / "silpose";
 }
 
-bool is_up_to_date(const fs::path& body_file) {
-  std::error_code failed;
-  const auto made = fs::last_write_time(body_file, failed);
-  if (failed) return false;
-  for (const fs::path& source :
-       {fs::read_symlink("/proc/self/exe", failed), data_directory() / "makehuman/SHA256SUMS"}) {
-    const auto changed = fs::last_write_time(source, failed);
-    if (!failed && changed > made) return false;
-  }
-  return true;
+std::optional<BodyModel> kept_human(const fs::path& body_file) {
+  if (!is_up_to_date(body_file)) return std::nullopt;
+  Result<BodyModel> body = load_body(body_file);
+  if (!body || !has_present_joint_places(*body)) return std::nullopt;
+  return std::move(*body);
 }
 
 Result<BodyModel> build_body(const std::string& model, Console& console) {
@@ -110,9 +118,8 @@ Result<std::shared_ptr<const BodyModel>> choose_body(const std::string& model, C
   const std::string person = is_human(model) ? without_dof(model) : model;
   const fs::path kept =
       person == "human" ? data_directory() / "human.body" : data_directory() / "bodies" / file_name_of(person);
-  if (is_human(model) && is_up_to_date(kept)) {
-    Result<BodyModel> body = load_body(kept);
-    if (body) return std::make_shared<const BodyModel>(std::move(*body));
+  if (is_human(model)) {
+    if (std::optional<BodyModel> body = kept_human(kept)) return std::make_shared<const BodyModel>(std::move(*body));
   }
   Result<BodyModel> body = build_body(person, console);
   if (!body) return body.failure();

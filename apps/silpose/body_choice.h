@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "apps/silpose/console.h"
@@ -22,8 +23,9 @@ void add_model_option(CLI::App& command, std::string& model);
 // ../share/silpose beside the program.
 std::filesystem::path data_directory();
 
-// True when `body_file` is there and neither the program nor the body data is newer.
-bool is_up_to_date(const std::filesystem::path& body_file);
+// The human kept in `body_file`, unless the program or the body data is newer, or an earlier version of the program
+// placed its joints elsewhere: then it has to be built anew.
+std::optional<BodyModel> kept_human(const std::filesystem::path& body_file);
 
 // The body of a --model. Errors: unknown model, phenotype out of range, body data missing or of another hash.
 Result<std::shared_ptr<const BodyModel>> choose_body(const std::string& model, Console& console);

@@ -80,7 +80,7 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
   add_model_option(*build, options->model);
   add_body_file_option(*build, options->out);
   build->add_flag("--if-older", options->if_older,
-                  "Only where the file is missing or older than the program or the data");
+                  "Only where the file is missing, older than the program or the data, or has joints placed otherwise");
   CLI::App* const inspect = model->add_subcommand("inspect", "What a body is made of, and the limits of its DOF");
   inspect->add_option("MODEL,--model", options->model, "As --model elsewhere")
       ->capture_default_str()
@@ -100,8 +100,8 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
       {list, [](Console&) { return list_models(); }},
       {build,
        [options](Console& console) -> Result<Outcome> {
-         if (options->if_older && is_up_to_date(options->out)) {
-           const Result<BodyModel> kept = load_body(options->out);
+         if (options->if_older) {
+           const std::optional<BodyModel> kept = kept_human(options->out);
            if (kept) return Outcome{.json = facts_of(*kept), .text = summary_of(*kept)};
          }
          const Result<BodyModel> body = build_body(options->model, console);

@@ -49,6 +49,10 @@ class MakeHumanData {
 // Errors: height or weight that the sliders cannot reach; names the reachable range.
 Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenotype);
 
+// Whether the joints of a body that build_human() made are where it would put them today: false for one that an earlier
+// version built and wrote to a file.
+[[nodiscard]] bool has_present_joint_places(const BodyModel& human);
+
 // The 37-DOF skeleton with given joint positions in the zero pose [20], world coordinates, metres. Only differences of
 // positions matter: the root's own place is the pose's root_tx, root_ty, root_tz.
 // Source: thesis Table 2.1 (cormier2019); signs, orders and limits: docs/formats.md.

@@ -4,53 +4,34 @@
 
 #include "silpose/base/check.h"
 #include "silpose/body/human.h"
+#include "silpose/body/human_joints.h"
 #include "silpose/body/human_shape.h"
 #include "silpose/body/makehuman_assets.h"
 
 namespace silpose {
 namespace {
 
-// Centres of rotation, by joint (right side; left ones are "joint-l-..."): the zero-DOF hip shares the thigh's.
-constexpr std::array<const char*, 12> kTrunkAndRightCubes = {
-    "joint-pelvis",  "joint-spine-4", "joint-spine-2",    "joint-neck",       "joint-r-upper-leg", "joint-r-upper-leg",
-    "joint-r-knee",  "joint-r-ankle", "joint-r-clavicle", "joint-r-shoulder", "joint-r-elbow",     "joint-r-hand"};
 enum HumanJoint { kThigh = 5, kShin = 6, kFoot = 7, kUpperArm = 13, kForearm = 14, kHand = 15, kToLeft = 4 };
 constexpr int kHead = 3;
 
-std::string left_of(std::string cube) { return cube.replace(cube.find("-r-"), 3, "-l-"); }
+// How the joints were placed: a fact of every body. Another value for every change of human_joints.cc.
+constexpr const char* kJointPlacesFact = "joint_places";
+constexpr const char* kJointPlaces = "bony landmarks 1";
 
 // The shaped mesh in silpose's frame: metres, floor at y = 0.
 class RestPose {
  public:
-  RestPose(const MakeHumanMesh& base, const std::vector<Eigen::Vector3f>& vertices)
-      : base_(base), vertices_(vertices), floor_(centre_in_file("joint-ground").y()) {}
-
-  Eigen::Vector3d centre(const std::string& cube) const { return in_metres(centre_in_file(cube)); }
-  Eigen::Vector3d vertex(size_t v) const { return in_metres(vertices_[v].cast<double>()); }
-
-  std::array<Eigen::Vector3d, 20> joints() const {
-    std::array<Eigen::Vector3d, 20> out;
-    for (int j = 0; j < 4; ++j) out[j] = centre(kTrunkAndRightCubes[j]);
-    for (int limb = 0; limb < 2; ++limb) {
-      for (int k = 0; k < 4; ++k) {
-        const std::string cube = kTrunkAndRightCubes[4 + 4 * limb + k];
-        out[4 + 8 * limb + k] = centre(cube);
-        out[8 + 8 * limb + k] = centre(left_of(cube));
-      }
-    }
-    return out;
+  RestPose(const MakeHumanMesh& base, const std::vector<Eigen::Vector3f>& in_decimetres) : base_(base) {
+    for (const Eigen::Vector3f& x : in_decimetres) vertices_.push_back(0.1 * x.cast<double>());
+    const Eigen::Vector3d floor(0, centre("joint-ground").y(), 0);
+    for (Eigen::Vector3d& x : vertices_) x -= floor;
   }
+  Eigen::Vector3d centre(const std::string& cube) const { return cube_centre(base_, vertices_, cube); }
+  const std::vector<Eigen::Vector3d>& vertices() const { return vertices_; }
 
  private:
-  Eigen::Vector3d in_metres(const Eigen::Vector3d& x) const { return 0.1 * (x - Eigen::Vector3d(0, floor_, 0)); }
-  Eigen::Vector3d centre_in_file(const std::string& cube) const {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-    for (const uint32_t v : base_.cubes.at(cube)) sum += vertices_[v].cast<double>();
-    return sum / 8;
-  }
   const MakeHumanMesh& base_;
-  const std::vector<Eigen::Vector3f>& vertices_;
-  double floor_;
+  std::vector<Eigen::Vector3d> vertices_;
 };
 
 // The rotation that takes direction `a` to `b` and, as far as that allows, `a_side` to `b_side`.
@@ -109,8 +90,11 @@ Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenot
   if (!sliders) return sliders.failure();
   const std::vector<Eigen::Vector3f> shape = shape_vertices(assets, *sliders);
   const RestPose rest(assets.base, shape);
+  Sliders average_build = *sliders;
+  average_build.weight = average_build.muscle = 0.5;
+  const RestPose average(assets.base, shape_vertices(assets, average_build));
 
-  const std::array<Eigen::Vector3d, 20> rest_joints = rest.joints();
+  const std::array<Eigen::Vector3d, 20> rest_joints = joint_centres(assets.base, rest.vertices(), average.vertices());
   const std::array<Eigen::Matrix3d, 20> rotations = zero_from_rest(rest, rest_joints);
   std::array<Eigen::Vector3d, 20> zero_joints = rest_joints;
   const Skeleton parents = human_skeleton(rest_joints);
@@ -141,12 +125,13 @@ Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenot
   add_end_point("left_finger_tip", kHand + kToLeft, "joint-l-finger-3-4");
 
   body.rest.faces = assets.base.body_faces;
-  for (size_t v = 0; v < kNumBodyVertices; ++v) body.rest.vertices.push_back(rest.vertex(v).cast<float>());
+  for (size_t v = 0; v < kNumBodyVertices; ++v) body.rest.vertices.push_back(rest.vertices()[v].cast<float>());
   body.name = fmt::format("human:age={:g},sex={},height={:.3f},weight={:.1f}", phenotype.age_years,
                           text_of_sex(phenotype.sex), body.height_m, body.weight_kg);
   if (phenotype.muscle) body.name += fmt::format(",muscle={:g}", *phenotype.muscle);
   body.facts = {{"source", "MakeHuman (CC0)"},
                 {"source_sha256", assets.hash},
+                {kJointPlacesFact, kJointPlaces},
                 {"slider_gender", fmt::format("{:.6f}", sliders->gender)},
                 {"slider_age", fmt::format("{:.6f}", sliders->age)},
                 {"slider_muscle", fmt::format("{:.6f}", sliders->muscle)},
@@ -154,6 +139,11 @@ Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenot
                 {"slider_height", fmt::format("{:.6f}", sliders->height)},
                 {"slider_proportions", fmt::format("{:.6f}", sliders->proportions)}};
   return body;
+}
+
+bool has_present_joint_places(const BodyModel& human) {
+  const auto fact = human.facts.find(kJointPlacesFact);
+  return fact != human.facts.end() && fact->second == kJointPlaces;
 }
 
 }  // namespace silpose
