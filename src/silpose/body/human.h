@@ -13,7 +13,8 @@
 
 namespace silpose {
 
-// Who the body is of. Unset height and weight follow the sliders' average for age and sex.
+// Who the body is of. An unset height follows the sliders' average for age and sex, an unset weight the body mass index
+// of adults (ncdrisc2016).
 struct Phenotype {
   double age_years = 25;            // 18 to 90
   double sex = 0.5;                 // 0 male, 1 female; 0.5 in between

@@ -45,6 +45,9 @@ void for_each_target(const Sliders& s, const Use& use) {
   }
 }
 
+// kg/m2. Source: adults of the world in 2014, men 24.2, women 24.4 (references.bib: ncdrisc2016).
+double mean_body_mass_index(double sex) { return 24.2 + 0.2 * sex; }
+
 // The muscle slider that goes with a weight slider. The weight slider alone changes the mass of an average build by a
 // tenth only; heavy and light bodies need less muscle with it (BMI 15 to 41 instead of 20 to 24 for men).
 double muscle_slider(const Phenotype& phenotype, double weight) {
@@ -162,8 +165,6 @@ Result<Sliders> solve_sliders(const MakeHumanAssets& assets, const Phenotype& ph
   Sliders sliders{.gender = phenotype.sex, .age = age_slider(phenotype.age_years)};
   sliders.muscle = muscle_slider(phenotype, sliders.weight);
   sliders.height = mean_height_slider(phenotype.sex);
-  if (!phenotype.height_m && !phenotype.weight_kg) return sliders;
-
   ShapeGrid grid(assets, phenotype, sliders);
   if (phenotype.height_m) {
     const double lowest = grid.stature(0.5, 0), highest = grid.stature(0.5, 1);
@@ -177,16 +178,17 @@ Result<Sliders> solve_sliders(const MakeHumanAssets& assets, const Phenotype& ph
     if (!phenotype.height_m) return average_height;
     return bisect([&](double height) { return grid.stature(weight, height); }, *phenotype.height_m, 1e-5);
   };
-  if (phenotype.weight_kg) {
-    const double lightest = grid.mass(0, height_at(0)), heaviest = grid.mass(1, height_at(1));
-    if (*phenotype.weight_kg < lightest || *phenotype.weight_kg > heaviest) {
-      return error("weight: {:.1f} kg is out of this body's range, {:.1f} to {:.1f} kg", *phenotype.weight_kg,
-                   lightest, heaviest);
-    }
-    sliders.weight =
-        bisect([&](double weight) { return grid.mass(weight, height_at(weight)); }, *phenotype.weight_kg, 1e-3);
-    sliders.muscle = muscle_slider(phenotype, sliders.weight);
+  const double lightest = grid.mass(0, height_at(0)), heaviest = grid.mass(1, height_at(1));
+  if (phenotype.weight_kg && (*phenotype.weight_kg < lightest || *phenotype.weight_kg > heaviest)) {
+    return error("weight: {:.1f} kg is out of this body's range, {:.1f} to {:.1f} kg", *phenotype.weight_kg, lightest,
+                 heaviest);
   }
+  // The sliders' average is slender: a body mass index of 21 for men, 19 for women.
+  const double height = phenotype.height_m.value_or(grid.stature(sliders.weight, average_height));
+  const double weight_kg = phenotype.weight_kg.value_or(
+      std::clamp(mean_body_mass_index(phenotype.sex) * height * height, lightest, heaviest));
+  sliders.weight = bisect([&](double weight) { return grid.mass(weight, height_at(weight)); }, weight_kg, 1e-3);
+  sliders.muscle = muscle_slider(phenotype, sliders.weight);
   sliders.height = height_at(sliders.weight);
   return sliders;
 }

@@ -2,41 +2,28 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <numbers>
+#include <utility>
 
 #include "silpose/base/check.h"
 
 namespace silpose {
 namespace {
 
-using States = std::array<double, 2>;  // probability or likelihood of: sides as they are, sides exchanged
-
 // [guess] How often a network begins to exchange the sides and ends, per second, and how likely it does at first.
-constexpr double kBegins_per_s = 0.3, kEnds_per_s = 0.6, kAtFirst = 0.03;
-// [guess] How far the line across the body turns: by the network's own noise, and by a quick pivot.
-constexpr double kNoise_rad = 0.3, kTurn_rad_per_s = 3;
-constexpr double kOutlier = 0.05;      // of the likelihood: what tells nothing
-constexpr double kLongestGap_s = 0.5;  // after which the body may face anywhere
+constexpr double kBegins_per_s = 1, kEnds_per_s = 2, kAtFirst = 0.03;
+// [guess] How far a frame's line is off: by the network's own noise, and by a body that pivots within the memory. Where
+// it was seen, exchanged lines were up to 0.5 off the mirror image.
+constexpr double kNoise_rad = 0.45, kMemory_s = 0.12;
+constexpr double kOutlier = 0.01;        // of the likelihood: what tells nothing
+constexpr double kLongestGap_s = 0.5;    // after which the body may face anywhere
+constexpr double kLeastExchanged_s = 1;  // before which what came first is not doubted
 
-// transition[i][j]: from state i to state j in `dt_s`, and that the line turned so.
-struct Transition {
-  States from_as_is, from_exchanged;
-};
+Eigen::Vector3d mirrored(const Eigen::Vector3d& line) { return {-line.x(), -line.y(), line.z()}; }
 
-Transition transition(const Eigen::Vector3d& before, const Eigen::Vector3d& now, double dt_s) {
-  const double turned = std::atan2(before.cross(now).norm(), before.dot(now));
-  const double deviation = std::hypot(kNoise_rad, kTurn_rad_per_s * dt_s);
-  const auto likelihood = [&](double off) { return kOutlier + std::exp(-0.5 * std::pow(off / deviation, 2)); };
-  const double same = likelihood(turned), other = likelihood(std::numbers::pi - turned);
-  const double begins = 1 - std::exp(-kBegins_per_s * dt_s), ends = 1 - std::exp(-kEnds_per_s * dt_s);
-  return {{(1 - begins) * same, begins * other}, {ends * other, (1 - ends) * same}};
-}
-
-void normalise(States& states) {
-  const double sum = states[0] + states[1];
-  for (double& state : states) state /= sum;
+double likelihood(const Eigen::Vector3d& line, const Eigen::Vector3d& expected) {
+  const double off = std::atan2(expected.cross(line).norm(), expected.dot(line)) / kNoise_rad;
+  return kOutlier + std::exp(-0.5 * off * off);
 }
 
 }  // namespace
@@ -56,62 +43,56 @@ double KeypointSides::step(const Keypoints3D& keypoints, double dt_s) {
   since_last_s_ += dt_s;
   const std::optional<Eigen::Vector3d> now = line_across(keypoints);
   if (!now) return 0;
-  if (!last_ || since_last_s_ > kLongestGap_s) {
+  const double passed_s = std::exchange(since_last_s_, 0.0);
+  if (!line_ || passed_s > kLongestGap_s) {
+    line_ = now;
     exchanged_ = kAtFirst;
-  } else {
-    const Transition by = transition(*last_, *now, since_last_s_);
-    States states;
-    for (size_t j = 0; j < 2; ++j) states[j] = (1 - exchanged_) * by.from_as_is[j] + exchanged_ * by.from_exchanged[j];
-    normalise(states);
-    exchanged_ = states[1];
+    as_is_s_ = exchanged_s_ = 0;
+    return exchanged_;
   }
-  last_ = now;
-  since_last_s_ = 0;
+  const double begins = 1 - std::exp(-kBegins_per_s * passed_s), ends = 1 - std::exp(-kEnds_per_s * passed_s);
+  const double before = exchanged_ * (1 - ends) + (1 - exchanged_) * begins;
+  const double if_as_is = (1 - before) * likelihood(*now, *line_),
+               if_exchanged = before * likelihood(*now, mirrored(*line_));
+  exchanged_ = if_exchanged / (if_as_is + if_exchanged);
+  const Eigen::Vector3d true_line = (1 - exchanged_) * *now + exchanged_ * mirrored(*now);
+  *line_ = (*line_ + (1 - std::exp(-passed_s / kMemory_s)) * (true_line - *line_)).stableNormalized();
+  (exchanged_ > kExchanged ? exchanged_s_ : as_is_s_) += passed_s;
+  if (exchanged_s_ > std::max(kLeastExchanged_s, as_is_s_)) {  // it was the beginning that was exchanged
+    *line_ = mirrored(*line_);
+    exchanged_ = 1 - exchanged_;
+    std::swap(as_is_s_, exchanged_s_);
+  }
   return exchanged_;
 }
 
 std::vector<double> exchanged_sides(std::span<const Keypoints3D* const> keypoints, std::span<const int64_t> times_ns) {
   check(keypoints.size() == times_ns.size(), "exchanged_sides: {} frames, {} times", keypoints.size(), times_ns.size());
   std::vector<double> exchanged(keypoints.size(), 0.0);
-  // Runs of frames without a long gap, each by itself.
-  std::vector<size_t> frames;
-  std::vector<Eigen::Vector3d> lines;
-  const auto finish = [&] {
-    const size_t count = frames.size();
-    if (count == 0) return;
-    std::vector<Transition> by(count);
-    std::vector<States> forward(count), backward(count, {1, 1});
-    forward[0] = {1 - kAtFirst, kAtFirst};
-    for (size_t i = 1; i < count; ++i) {
-      by[i] =
-          transition(lines[i - 1], lines[i], static_cast<double>(times_ns[frames[i]] - times_ns[frames[i - 1]]) * 1e-9);
-      for (size_t j = 0; j < 2; ++j) {
-        forward[i][j] = forward[i - 1][0] * by[i].from_as_is[j] + forward[i - 1][1] * by[i].from_exchanged[j];
+  size_t first = 0, last_seen = 0;
+  // A stretch is judged once more from its end, so that its first frames are compared with what came after them.
+  const auto judge = [&](size_t begin, size_t end) {
+    KeypointSides sides;
+    for (const bool again : {false, true}) {
+      for (size_t i = begin; i < end; ++i) {
+        const size_t t = again ? end - 1 - (i - begin) : i, before = again ? t + 1 : t - 1;
+        const bool is_first = i == begin;
+        const double dt_s = is_first ? 0 : std::abs(static_cast<double>(times_ns[t] - times_ns[before])) * 1e-9;
+        exchanged[t] = sides.step(*keypoints[t], dt_s);
       }
-      normalise(forward[i]);
     }
-    for (size_t i = count - 1; i-- > 0;) {
-      const Transition& next = by[i + 1];
-      backward[i] = {next.from_as_is[0] * backward[i + 1][0] + next.from_as_is[1] * backward[i + 1][1],
-                     next.from_exchanged[0] * backward[i + 1][0] + next.from_exchanged[1] * backward[i + 1][1]};
-      normalise(backward[i]);
-    }
-    for (size_t i = 0; i < count; ++i) {
-      States states{forward[i][0] * backward[i][0], forward[i][1] * backward[i][1]};
-      normalise(states);
-      exchanged[frames[i]] = states[1];
-    }
-    frames.clear();
-    lines.clear();
   };
+  bool any = false;
   for (size_t t = 0; t < keypoints.size(); ++t) {
-    const std::optional<Eigen::Vector3d> line = line_across(*keypoints[t]);
-    if (!line) continue;
-    if (!frames.empty() && static_cast<double>(times_ns[t] - times_ns[frames.back()]) * 1e-9 > kLongestGap_s) finish();
-    frames.push_back(t);
-    lines.push_back(*line);
+    if (!line_across(*keypoints[t])) continue;
+    if (any && static_cast<double>(times_ns[t] - times_ns[last_seen]) * 1e-9 > kLongestGap_s) {
+      judge(first, t);
+      first = t;
+    }
+    any = true;
+    last_seen = t;
   }
-  finish();
+  if (any) judge(first, keypoints.size());
   return exchanged;
 }
 

@@ -1,9 +1,9 @@
 // KeypointSides: whether a network took a body's left for its right. A network sees each image by itself; from behind,
-// or from the side, it may exchange the sides for some frames, and mirror the depth of the whole body with them. A body
-// does not turn half round from one frame to the next: two states, exchanged or not, are followed over time by the
-// line across hips and shoulders.
-// Based on: the forward and backward pass of a hidden Markov model (references.bib: rabiner1989).
-// Threads: values and functions without state.
+// or from the side, it may exchange the sides for some frames. What it sees then is the body mirrored in depth: the
+// line across hips and shoulders points the other way in the image, and the same way in depth. A body does not turn
+// half round within a tenth of a second: the line is followed over time, and each frame's is compared with it and with
+// its mirror image. Based on: a hidden Markov model of two states (references.bib: rabiner1989). Threads: values and
+// functions without state.
 #pragma once
 
 #include <Eigen/Core>
@@ -28,15 +28,17 @@ class KeypointSides {
   // where there are none.
   double step(const Keypoints3D& keypoints, double dt_s);
 
-  static auto members(auto& s) { return std::tie(s.exchanged_, s.last_, s.since_last_s_); }
+  static auto members(auto& s) { return std::tie(s.exchanged_, s.line_, s.since_last_s_, s.as_is_s_, s.exchanged_s_); }
 
  private:
   double exchanged_ = 0;
-  std::optional<Eigen::Vector3d> last_;
+  std::optional<Eigen::Vector3d> line_;  // across the body, as it is believed to be
   double since_last_s_ = 0;
+  double as_is_s_ = 0, exchanged_s_ = 0;  // how long each state held
 };
 
-// The same for all frames of a clip at once, by what comes before and after. Shapes: keypoints and times [T] -> [T].
+// The same for all frames of a clip at once: of each stretch without a gap the longer part is right. Shapes: keypoints
+// and times [T] -> [T].
 std::vector<double> exchanged_sides(std::span<const Keypoints3D* const> keypoints, std::span<const int64_t> times_ns);
 
 // More probable than this: what the keypoints say is not used.

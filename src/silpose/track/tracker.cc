@@ -35,6 +35,7 @@ constexpr double kSeekShare = 0.5;                                    // of othe
 // What was tracked turns no further than this (cosine of 70 degrees) when it is sought anew, unless keypoints have
 // faced elsewhere for about this long.
 constexpr double kTurnedCosine = 0.34, kFacingMemory_s = 0.5;
+constexpr double kFacingKnown_s = 3;  // after the last keypoints
 
 }  // namespace
 
@@ -116,15 +117,15 @@ struct Tracker::Impl {
       if (!seen) continue;
       const double agreement = tracked.dot(world_from_keypoints(options.cameras[c], observations[c].keypoints) * *seen);
       facing_agreement += std::min(dt_s / kFacingMemory_s, 1.0) * (agreement - facing_agreement);
+      since_facing_s = 0;
       return;
     }
+    since_facing_s += dt_s;
   }
 
-  // Whether a pose faces elsewhere than the estimate, and keypoints do not say so.
-  bool is_turned(std::span<const Observation> observations, const StartingPose& start) const {
-    const auto has_keypoints = [](const Observation& o) { return line_across(o.keypoints).has_value(); };
-    if (options.evidence == EvidenceKind::kSilhouette || std::ranges::none_of(observations, has_keypoints))
-      return false;
+  // Whether a pose faces elsewhere than the estimate, with which keypoints agreed until now.
+  bool is_turned(const StartingPose& start) const {
+    if (options.evidence == EvidenceKind::kSilhouette || since_facing_s > kFacingKnown_s) return false;
     return facing_agreement > kTurnedCosine &&
            line_across_pose(start.pose).dot(line_across_pose(last_pose)) < kTurnedCosine;
   }
@@ -155,7 +156,7 @@ struct Tracker::Impl {
     if (!options.num_hypotheses || report.visual_accuracy >= kGoodAccuracy || since_seek_s < seek_interval_s) return;
     const Stopwatch stopwatch;
     std::vector<StartingPose> found = starting_poses(observations);
-    std::erase_if(found, [&](const StartingPose& start) { return is_turned(observations, start); });
+    std::erase_if(found, [&](const StartingPose& start) { return is_turned(start); });
     if (!found.empty()) filter->add(found);
     ++num_seeks;
     since_seek_s = 0;
@@ -166,7 +167,8 @@ struct Tracker::Impl {
   // All that goes from step to step but the filter's own.
   static auto members(auto& t) {
     return std::tie(t.last_pose, t.started, t.num_seeks, t.seek_interval_s, t.since_seek_s, t.accuracy_of_late,
-                    t.deviation_of_late, t.steps, t.last_time_ns, t.last_seen_ns, t.sides, t.facing_agreement);
+                    t.deviation_of_late, t.steps, t.last_time_ns, t.last_seen_ns, t.sides, t.facing_agreement,
+                    t.since_facing_s);
   }
 
   TrackerOptions options;
@@ -182,6 +184,7 @@ struct Tracker::Impl {
   int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
   std::vector<KeypointSides> sides;  // [C]
   double facing_agreement = 1;       // cosine between where the estimate and the keypoints face
+  double since_facing_s = 2 * kFacingKnown_s;
 };
 
 Tracker::Tracker(const TrackerOptions& options) : impl_(std::make_unique<Impl>(options)) {}
