@@ -3,7 +3,8 @@
 // all frames are off alike, so that neither time nor a good overlap makes it smaller. How wrong the body is shows in
 // how badly its outline fits: with outlines as clean as exact masks of the right body leave them nothing is added.
 // But one camera sees a larger body further away as it sees a smaller one nearby: how well the size is known has to be
-// told, and is added whatever the outline.
+// told, and is added whatever the outline. So is it with the errors of masks and networks: they change little from
+// frame to frame, and a filter that takes them for independent claims too much.
 // Based on: consider covariance of parameters that are not estimated (references.bib: schmidt1966).
 // Threads: constant after construction; one CoverageLikelihood::Scratch of likelihood() per thread.
 #pragma once
@@ -36,12 +37,15 @@ class BodyError {
  private:
   void add_wrong_lengths(const CoverageEvidence& evidence, std::span<const double> pose,
                          CoverageLikelihood::Scratch& scratch, Variance& result) const;
+  [[nodiscard]] Eigen::MatrixXd correlated_errors(const CoverageEvidence& evidence, std::span<const double> stretched,
+                                                  const Eigen::MatrixXd& information, const Eigen::VectorXd& rest,
+                                                  CoverageLikelihood::Scratch& scratch) const;
   void add_wrong_size(const PinholeCamera& camera, std::span<const double> pose, Variance& result) const;
 
   std::unique_ptr<CoverageLikelihood> likelihood_;  // of the stretchable body
   double size_deviation_;
-  Eigen::MatrixXd lengths_;        // [S, S] prior covariance
-  std::vector<double> deviation_;  // [D] motion/noise.h's pose_deviation
+  Eigen::MatrixXd lengths_;                         // [S, S] prior covariance
+  std::vector<double> deviation_, seen_deviation_;  // [D] motion/noise.h's pose_deviation
 };
 
 }  // namespace silpose
