@@ -33,19 +33,23 @@ class [[nodiscard]] Result {
   [[nodiscard]] bool ok() const { return expected_.has_value(); }
   explicit operator bool() const { return ok(); }
 
-  // The value. Errors: throws std::runtime_error with the message. On a temporary it returns by value.
+  // The value. Errors: throws std::runtime_error with the message.
+  // A temporary gives value, content and error away by value: `for (x : f().value())` and `const auto& x = *f();` are
+  // safe. What is inside the value and reached by a call dies with it: `for (x : f().value().members())` is not.
   T& value() & { return throw_unless_ok(), *expected_; }
   const T& value() const& { return throw_unless_ok(), *expected_; }
   T value() && { return throw_unless_ok(), std::move(*expected_); }
 
   // REQUIRES: ok().
-  T& operator*() { return *expected_; }
-  const T& operator*() const { return *expected_; }
+  T& operator*() & { return *expected_; }
+  const T& operator*() const& { return *expected_; }
+  T operator*() && { return std::move(*expected_); }
   T* operator->() { return &*expected_; }
   const T* operator->() const { return &*expected_; }
 
   // REQUIRES: !ok().
-  [[nodiscard]] const Error& error() const { return expected_.error(); }
+  [[nodiscard]] const Error& error() const& { return expected_.error(); }
+  [[nodiscard]] Error error() && { return std::move(expected_.error()); }
 
   // Passes a failure on as another type's: `if (!mesh) return mesh.failure();`
   [[nodiscard]] tl::unexpected<Error> failure() const { return tl::unexpected<Error>(expected_.error()); }
@@ -70,7 +74,8 @@ class [[nodiscard]] Result<void> {
   void value() const {
     if (!ok()) throw std::runtime_error(expected_.error().message);
   }
-  [[nodiscard]] const Error& error() const { return expected_.error(); }
+  [[nodiscard]] const Error& error() const& { return expected_.error(); }
+  [[nodiscard]] Error error() && { return std::move(expected_.error()); }
   [[nodiscard]] tl::unexpected<Error> failure() const { return tl::unexpected<Error>(expected_.error()); }
 
  private:

@@ -60,6 +60,10 @@ TEST(Result, TemporaryGivesItsValueAway) {
   const std::unique_ptr<int> taken = make().value();
   EXPECT_EQ(*taken, 4);
   static_assert(std::is_same_v<decltype(make().value()), std::unique_ptr<int>>, "a temporary returns by value");
+  const std::unique_ptr<int>& kept = *make();
+  EXPECT_EQ(*kept, 4);
+  static_assert(std::is_same_v<decltype(*make()), std::unique_ptr<int>>);
+  static_assert(std::is_same_v<decltype(make().error()), Error>);
 }
 
 TEST(Result, OfNothing) {

@@ -168,4 +168,14 @@ std::vector<double> Skeleton::denormalise(std::span<const double> npsu) const {
   return pose;
 }
 
+void place_root(const Skeleton& skeleton, std::span<double> pose, const Eigen::Vector3d& root_in_world) {
+  check(std::ssize(pose) == skeleton.num_dofs(), "place_root: pose has {} values, not {}", pose.size(),
+        skeleton.num_dofs());
+  for (size_t d = 0; d < pose.size(); ++d) {
+    const Dof& dof = skeleton.dofs()[d];
+    if (dof.joint_idx != 0 || !dof.is_translation) continue;
+    pose[d] = dof.axis.dot(root_in_world - skeleton.joints()[0].offset_in_parent);
+  }
+}
+
 }  // namespace silpose

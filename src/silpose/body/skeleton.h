@@ -90,6 +90,11 @@ class Skeleton {
   std::vector<size_t> step_start_;  // [J + 1] steps of joint j: step_start_[j] to step_start_[j + 1]
 };
 
+// Sets the translations of the root so that its joint is at `root_in_world`, in metres; all else in the pose [D] stays.
+// Their axes must be orthogonal. A root with fewer than three comes as near as it can; one without any is not moved.
+// Errors: throws std::invalid_argument for a pose of another size.
+void place_root(const Skeleton& skeleton, std::span<double> pose, const Eigen::Vector3d& root_in_world);
+
 // Indices of the DOF for which `predicate(const Dof&)` holds, ascending.
 template <class Predicate>
 [[nodiscard]] std::vector<int> find_dofs(const Skeleton& skeleton, const Predicate& predicate) {

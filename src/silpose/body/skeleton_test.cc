@@ -186,6 +186,38 @@ TEST(Skeleton, TurnsAboutAnyAxis) {
       Eigen::AngleAxisd(0.7, axis).toRotationMatrix(), 1e-12));
 }
 
+// A root with an offset whose rotations come first, whose translations are in another order than x, y, z, and one of
+// which points down.
+TEST(Skeleton, PlacesTheRootWhereverItsTranslationsAre) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+  const Skeleton skeleton(
+      "rig",
+      {{.name = "root", .offset_in_parent = {0.1, 0.2, 0.3}, .dof_indices = {1, 3, 4, 0}},
+       {.name = "tip", .parent_idx = 0, .offset_in_parent = {0, 1, 0}, .dof_indices = {2, 5}}},
+      {{.name = "root_ry", .axis = y, .lower = -1, .upper = 1},
+       {.name = "root_tz", .is_translation = true, .axis = z, .lower = -1, .upper = 1},
+       {.name = "tip_ty", .joint_idx = 1, .is_translation = true, .axis = y, .lower = -1, .upper = 1},
+       {.name = "root_tx", .is_translation = true, .axis = x, .lower = -1, .upper = 1},
+       {.name = "root_down", .is_translation = true, .axis = -y, .lower = -1, .upper = 1},
+       {.name = "tip_rx", .joint_idx = 1, .axis = x, .lower = -1, .upper = 1}});
+  std::vector<double> pose = {0.5, 9, 0.25, 9, 9, -0.75};
+  const Eigen::Vector3d place(3, -4, 5);
+  place_root(skeleton, pose, place);
+  EXPECT_THAT(pose,
+              ElementsAre(0.5, DoubleNear(4.7, 1e-12), 0.25, DoubleNear(2.9, 1e-12), DoubleNear(4.2, 1e-12), -0.75));
+  EXPECT_LT((skeleton.forward_kinematics(pose)[0].translation - place).norm(), 1e-12);
+}
+
+TEST(Skeleton, DoesNotPlaceARootThatCannotMove) {
+  const Skeleton skeleton("arm", {{.name = "root", .dof_indices = {0, 1}}},
+                          {{.name = "root_ry", .axis = Eigen::Vector3d::UnitY(), .lower = -1, .upper = 1},
+                           {.name = "root_rx", .axis = Eigen::Vector3d::UnitX(), .lower = -1, .upper = 1}});
+  std::vector<double> pose = {0.5, -0.25};
+  place_root(skeleton, pose, {1, 2, 3});
+  EXPECT_THAT(pose, ElementsAre(0.5, -0.25));
+  EXPECT_THROW(place_root(skeleton, std::span(pose).first(1), {1, 2, 3}), std::invalid_argument);
+}
+
 TEST(Skeleton, RefusesWhatDoesNotFit) {
   const Dof dof{.name = "a_rx", .lower = -1, .upper = 1};
   EXPECT_THROW(Skeleton("s", {{.name = "a", .parent_idx = 0}}, {}), std::invalid_argument);

@@ -71,7 +71,8 @@ class Mot : public testing::Test {
 TEST_F(Mot, TheZeroPoseIsTheModelsFacingZWithPalmsToTheThighs) {
   std::vector<double> pose = pose_with({});
   pose[0] = 1, pose[1] = 0.95, pose[2] = -2;
-  for (const auto& [name, value] : written({pose})[0]) {
+  const std::vector<Coordinates> rows = written({pose});
+  for (const auto& [name, value] : rows[0]) {
     double wanted = 0;
     if (name == "pelvis_rotation") wanted = -90;
     if (name == "pro_sup_r" || name == "pro_sup_l") wanted = 90;

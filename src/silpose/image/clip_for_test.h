@@ -78,7 +78,7 @@ inline void write_clip_for_test(const std::filesystem::path& path, std::span<con
     video.second->sample_aspect_ratio = clip.pixel_aspect;
     if (clip.times_ms.empty()) video.second->avg_frame_rate = {clip.rate, 1};
     if (clip.display_matrix) {
-      uint8_t* const data = av_stream_new_side_data(video.second, AV_PKT_DATA_DISPLAYMATRIX, 9 * sizeof(int32_t));
+      uint8_t* const data = add_side_data(*video.second, AV_PKT_DATA_DISPLAYMATRIX, 9 * sizeof(int32_t));
       std::memcpy(data, clip.display_matrix->data(), 9 * sizeof(int32_t));
     }
   }
@@ -120,7 +120,7 @@ inline void write_clip_for_test(const std::filesystem::path& path, std::span<con
       const int stride[] = {3 * encoder.width};
       sws_scale(scaler.get(), rows, stride, 0, encoder.height, frame->data, frame->linesize);
       frame->pts = clip.times_ms.empty() ? static_cast<int64_t>(i) : clip.times_ms.at(i);
-      frame->interlaced_frame = frame->top_field_first = clip.is_interlaced ? 1 : 0;
+      set_interlaced(*frame, clip.is_interlaced);
       encode(video, frame.get());
     }
     encode(video, nullptr);

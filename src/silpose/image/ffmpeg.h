@@ -1,7 +1,10 @@
-// Owners of FFmpeg's objects, and its codes as text. For the readers and writers of video in this module alone.
+// Owners of FFmpeg's objects, its codes as text, and what its versions (5.1 to 7.1) call differently. For the readers
+// and writers of video in this module alone.
 // Threads: functions without state; silence_ffmpeg() holds for all threads from the first call on.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -34,5 +37,16 @@ std::string ffmpeg_path(const std::string& path);
 
 // Keeps FFmpeg and its codecs from printing.
 void silence_ffmpeg();
+
+// Whether a picture is made of two fields, and whether its upper line is of the earlier one.
+[[nodiscard]] bool is_interlaced(const AVFrame& frame);
+[[nodiscard]] bool is_top_field_first(const AVFrame& frame);
+// Of two fields, the upper line of the earlier one, or of none.
+void set_interlaced(AVFrame& frame, bool is_interlaced);
+
+// What the container says beside the pictures, owned by the stream; null: nothing of that type.
+[[nodiscard]] const uint8_t* side_data_of(const AVStream& stream, AVPacketSideDataType type);
+// `size` bytes of it to be filled in before the header is written; null: no memory.
+[[nodiscard]] uint8_t* add_side_data(AVStream& stream, AVPacketSideDataType type, size_t size);
 
 }  // namespace silpose

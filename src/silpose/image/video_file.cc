@@ -164,15 +164,15 @@ class VideoFile : public FrameSource {
   Result<std::optional<Picture>> picture() {
     const AVFrame& frame = *decoded_;
     if (num_given_ == 0) look_at_first(frame);
-    const bool is_interlaced = frame.interlaced_frame != 0;
-    if (is_interlaced && !told_interlaced_) {
+    const bool has_fields = is_interlaced(frame);
+    if (has_fields && !told_interlaced_) {
       warnings_.push_back(fmt::format("{}: interlaced; one field of each picture is used", name_));
     }
-    told_interlaced_ = told_interlaced_ || is_interlaced;
+    told_interlaced_ = told_interlaced_ || has_fields;
     Result<cv::Mat> converted = converter_.convert(frame);
     if (!converted) return error("{}: {}", name_, converted.error().message);
     cv::Mat& stored = *converted;
-    if (is_interlaced && stored.rows > 1) keep_one_field(stored, frame.top_field_first != 0);
+    if (has_fields && stored.rows > 1) keep_one_field(stored, is_top_field_first(frame));
     Picture shown{.image = shown_picture(stored, pixel_aspect_, turn_), .time_ns = time_of(frame)};
     ++num_given_;
     return std::optional<Picture>(std::move(shown));
@@ -192,7 +192,7 @@ class VideoFile : public FrameSource {
     }
 
     turn_ = {};
-    if (const uint8_t* bytes = av_stream_get_side_data(stream_, AV_PKT_DATA_DISPLAYMATRIX, nullptr)) {
+    if (const uint8_t* bytes = side_data_of(*stream_, AV_PKT_DATA_DISPLAYMATRIX)) {
       take_turn(bytes);
     } else if (const AVFrameSideData* data = av_frame_get_side_data(&frame, AV_FRAME_DATA_DISPLAYMATRIX)) {
       take_turn(data->data);

@@ -157,5 +157,17 @@ TEST(OutlineSpans, LeaveOutFacesWithAnUnseenVertex) {
   EXPECT_TRUE(scanned_rows(spans, pixels, rows, true).empty());
 }
 
+TEST(OutlineSpans, AreNoneWhereNoRowIsCrossed) {
+  Rng rng(5);
+  const EdgeTopology topology(torus_faces(17, 11, false));
+  const Pixels pixels = torus_pixels(17, 11, 0, rng);
+  for_each_simd_target([&](const char* target) {
+    SCOPED_TRACE(target);
+    OutlineSpans spans(topology);  // fresh: no earlier scan has made room for crossings
+    EXPECT_TRUE(scanned_rows(spans, pixels, {500, 1, 20}, false).empty());
+    EXPECT_TRUE(scanned_rows(spans, pixels, {500, 1, 20}, true).empty());
+  });
+}
+
 }  // namespace
 }  // namespace silpose

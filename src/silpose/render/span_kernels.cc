@@ -177,6 +177,7 @@ size_t find_span_ends(const RowGroup* HWY_RESTRICT groups, size_t num_groups, Gr
   const auto left = hn::Set(df, 1.0f), right = hn::Set(df, -1.0f);
   size_t num_ends = 0;
   for (size_t g = 0; g < num_groups; ++g) {
+    if (groups[g].count == 0) continue;  // `first` may be past the end, and there may be no crossings at all
     for (size_t lane = 0; lane < kGroupRows; lane += kLanes) {
       Crossing* const begin = crossings[groups[g].first].of_row + lane;
       const Crossing* const end = begin + kGroupRows * groups[g].count;

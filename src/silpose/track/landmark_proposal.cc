@@ -96,10 +96,7 @@ StateBatch LandmarkProposal::propose(const Observation& observation, int num_can
   parallel_for(fits.size(), 4, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       Eigen::VectorXd pose = poses.row(static_cast<Eigen::Index>(k)).transpose();
-      for (int d = 0; d < body_->skeleton.num_dofs(); ++d) {
-        const Dof& dof = body_->skeleton.dofs()[static_cast<size_t>(d)];
-        if (dof.joint_idx == 0 && dof.is_translation) pose[d] = dof.axis.dot(root);
-      }
+      place_root(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())}, root);
       fits[k] = problem.at(std::move(pose));
       descend(fits[k], kMostIterations, {1e-3, 1e-4},
               [&](const Fit& from, double damping) { return problem.step(from, damping); });

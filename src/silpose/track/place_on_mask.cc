@@ -66,7 +66,7 @@ StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, con
       for (int iteration = 0; iteration < 5; ++iteration) {
         const Eigen::Vector3d root =
             camera.cam_from_world.inverse() * Eigen::Vector3d(camera.ray_from_pixel(aim) * depth);
-        std::copy_n(root.data(), 3, pose.begin());
+        place_root(body.skeleton, pose, root);
         project_mesh(camera, skin_vertices(body, pose), body.rest.faces, mesh);
         outline.draw(mesh.pixels, window, mask, mesh.cut_faces);
         const Blob drawn = measure(mask);

@@ -9,7 +9,8 @@
 
 namespace silpose {
 
-// Moves each candidate's root so that its silhouette has the area and the centroid of the observed one.
+// Moves each candidate's root so that its silhouette has the area and the centroid of the observed one, as far as the
+// root's translations go: candidates of a rig without them come back as they are.
 // Shapes: [K, D] -> [K, D]. REQUIRES: something was found.
 StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
                          const StateBatch& candidates);

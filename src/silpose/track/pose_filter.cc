@@ -106,17 +106,17 @@ class JointFilter final : public PoseFilter {
 class TwoFilters final : public PoseFilter {
  public:
   TwoFilters(const TrackerOptions& options, const Renderers& renderers)
-      : skeleton_(options.body->skeleton),
+      : body_(options.body),
         root_fixed_(options.root_fixed),
         cropped_(renderers, cropped_options(options)),
         whole_(renderers, likelihood_options(options)),
         pose_filter_(options, cropped_,
-                     dofs_where(skeleton_,
+                     dofs_where(body_->skeleton,
                                 [&](const Dof& dof) {
                                   return root_fixed_ ? !is_root(dof) : !(is_root(dof) && dof.is_translation);
                                 }),
                      options.seed),
-        root_filter_(options, whole_, dofs_where(skeleton_, is_root), options.seed + 1) {}
+        root_filter_(options, whole_, dofs_where(body_->skeleton, is_root), options.seed + 1) {}
 
   void start(std::span<const StartingPose> starts) override {
     estimate_ = starts.front().pose;
@@ -158,15 +158,16 @@ class TwoFilters final : public PoseFilter {
     if (root_fixed_) return;
     const std::vector<double> root = root_filter_.estimate();
     const StateBatch& root_states = root_filter_.particles().states;
-    for (Eigen::Index d = 0; d < skeleton_.num_dofs(); ++d) {
-      const Dof& dof = skeleton_.dofs()[static_cast<size_t>(d)];
+    const Skeleton& skeleton = body_->skeleton;
+    for (Eigen::Index d = 0; d < skeleton.num_dofs(); ++d) {
+      const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
       if (!is_root(dof) || !dof.is_translation) continue;
       estimate_[static_cast<size_t>(d)] = root[static_cast<size_t>(d)];
       particles_.states.col(d) = root_states.col(d);
     }
   }
 
-  const Skeleton& skeleton_;
+  std::shared_ptr<const BodyModel> body_;
   bool root_fixed_;
   SilhouetteLikelihood cropped_, whole_;
   SamplingFilter pose_filter_, root_filter_;

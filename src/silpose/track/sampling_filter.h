@@ -20,7 +20,7 @@ namespace silpose {
 
 class SamplingFilter {
  public:
-  // `free_dofs` [D] tells which DOF move. `options` are resolved. The likelihood outlives the filter.
+  // `free_dofs` [D] tells which DOF move. `options` are resolved, and copied. The likelihood outlives the filter.
   SamplingFilter(const TrackerOptions& options, const SilhouetteLikelihood& likelihood, std::vector<bool> free_dofs,
                  uint64_t seed);
 
@@ -49,7 +49,7 @@ class SamplingFilter {
   void hold(StateBatch& states, std::span<const double> held) const;
   void make_filter(StateBatch states);
 
-  const TrackerOptions& options_;
+  TrackerOptions options_;
   const SilhouetteLikelihood& likelihood_;
   std::vector<bool> free_dofs_;
   uint64_t seed_;

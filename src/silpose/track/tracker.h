@@ -1,6 +1,9 @@
-// Tracker: the method. One step a frame: predict, weigh by silhouette, resample or anneal, estimate. No I/O.
-// Presets: `thesis`, two plain filters for root and pose (cormier2019 sect. 2.4; martinez2008); `default`, one annealed
-// filter over root and pose together (deutscher2005).
+// Tracker: the method. One step a frame: predict, fit or sample, weigh by silhouette, estimate. No I/O.
+// Presets: `default`, a mixture of four hypotheses, each fitted to the silhouettes and predicted at constant velocity
+// (mixture_filter.h: bell1993, sminchisescu2003); `accurate`, the same with eight hypotheses on the whole mesh, which
+// track_clip() also smooths over the clip; `thesis`, two plain particle filters for root and pose (cormier2019
+// sect. 2.4; martinez2008). With num_particles or num_layers, `default` and `accurate` are instead one sampling filter
+// over root and pose together, plain or annealed (deutscher2005).
 // Threads: one thread steps a tracker; a step itself uses all cores and gives the same result on any number.
 #pragma once
 

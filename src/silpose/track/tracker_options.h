@@ -35,7 +35,7 @@ struct TrackerOptions {
   std::optional<double> sigma_deg;        // of a typical rotational DOF per 1/30 s; the others scale with it
   std::optional<std::string> resampling;  // filter/resampling.h
   double resample_below = 1;              // of n_eff / N; 1: every step
-  std::optional<double> regenerate;       // fraction of the comb
+  std::optional<double> regenerate;       // fraction of the particles, drawn anew around the estimate
   std::optional<std::string> metric;      // "pixel-count" or "coverage" (likelihood/silhouette_likelihood.h)
   std::optional<double> sharpness;
   std::optional<Estimate> estimate;
@@ -46,7 +46,9 @@ struct TrackerOptions {
   // What poses are compared by while they are tracked, and whether starts go by keypoints, too, where there are any.
   EvidenceKind evidence = EvidenceKind::kSilhouette;
   bool landmarks = false;
-  std::shared_ptr<const Proposal> proposal;  // candidates for the start and for regeneration; absent: common poses
+  // Candidates for the start, and for where the fitted mixture seeks the pose anew; absent: the common poses. What the
+  // sampling filters regenerate is drawn around their estimate.
+  std::shared_ptr<const Proposal> proposal;
 
   // Errors: throws std::invalid_argument that names the option and its value.
   void check() const;
