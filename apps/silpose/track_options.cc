@@ -51,6 +51,9 @@ void add_sampling_options(CLI::App& app, TrackOptions& options) {
   add("--resample-below", options.resample_below, "Only when n_eff is below this part of the particles (1)")
       ->check(within(0, 1));
   add("--regenerate", tracker.regenerate, "Part of the comb's particles that is made anew")->check(within(0, 0.99));
+  add("--regenerate-from", tracker.regenerate_from,
+      "What they are made from: random (about the estimate) or network (about the poses that it recognises)")
+      ->check(CLI::IsMember({"random", "network"}));
   add("--sharpness", tracker.sharpness, "How strongly better silhouettes are preferred")->check(within(1e-3, 1e6));
   add("--metric", tracker.metric,
       "How silhouettes are compared: pixel-count (pixels that differ) or coverage (how much of each; finer, slower)")
@@ -68,9 +71,9 @@ std::optional<std::string> sampling_option(const TrackOptions& options) {
   const std::pair<const char*, bool> given[] = {
       {"--motion", tracker.motion.has_value()},         {"--sigma-deg", tracker.sigma_deg.has_value()},
       {"--resampling", tracker.resampling.has_value()}, {"--resample-below", options.resample_below.has_value()},
-      {"--regenerate", tracker.regenerate.has_value()}, {"--sharpness", tracker.sharpness.has_value()},
-      {"--metric", tracker.metric.has_value()},         {"--root fixed", options.root == "fixed"},
-      {"--estimate", options.estimate.has_value()}};
+      {"--regenerate", tracker.regenerate.has_value()}, {"--regenerate-from", tracker.regenerate_from.has_value()},
+      {"--sharpness", tracker.sharpness.has_value()},   {"--metric", tracker.metric.has_value()},
+      {"--root fixed", options.root == "fixed"},        {"--estimate", options.estimate.has_value()}};
   for (const auto& [name, is_given] : given) {
     if (is_given) return name;
   }
@@ -231,6 +234,7 @@ std::map<std::string, std::string> chosen_options(const TrackOptions& options, c
   keep("resampling", used.resampling);
   keep("resample-below", std::optional(used.resample_below));
   keep("regenerate", used.regenerate);
+  keep("regenerate-from", used.regenerate_from);
   keep("metric", used.metric);
   keep("sharpness", used.sharpness);
   if (used.estimate) {

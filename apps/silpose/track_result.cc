@@ -45,6 +45,7 @@ FactLines run_lines(const TrackTold& told) {
   lines.emplace_back("Preset", told.options.tracker.preset);
   for (const auto& [name, value] : chosen_options(told.options, told.tracked.used)) lines.emplace_back(name, value);
   lines.emplace_back("Seed", std::to_string(told.common.seed));
+  for (const std::string& line : told.tracked.doubtful) lines.emplace_back("Doubtful", line);
   lines.emplace_back("Frames a second", fmt::format("{:.2f}", frames_per_second(told.tracked)));
   return lines;
 }
@@ -93,6 +94,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run["evidence"] = told.source.finds_landmarks() ? told.options.evidence : "silhouette";
   run["cameras"] = nlohmann::ordered_json::array();
   for (const PinholeCamera& camera : told.writer.cameras()) run["cameras"].push_back(camera.name);
+  run["doubtful"] = tracked.doubtful;
   run["warnings"] = told.warnings;
   run["out"] = told.options.out;
 

@@ -11,6 +11,7 @@
 #include "silpose/base/job_line.h"
 #include "silpose/exchange/mot.h"
 #include "silpose/recording/track_recorder.h"
+#include "silpose/track/open_questions.h"
 #include "silpose/track/track_clip.h"
 #include "silpose/track/tracker.h"
 
@@ -64,6 +65,9 @@ class TrackRun {
       tracked_.warnings.emplace_back("no motion.mot: the model's skeleton is not the human one");
     }
     now_.seconds.write += writing.seconds();
+    const std::vector<std::string> open = ambiguities(now_.reports);
+    tracked_.warnings.insert(tracked_.warnings.end(), open.begin(), open.end());
+    tracked_.doubtful = doubtful_angles(now_.reports, writer_.body());
     tracked_.num_frames = now_.num_frames;
     tracked_.seconds = now_.seconds;
     tracked_.loop_s = earlier_loop_s_ + wall_.seconds();

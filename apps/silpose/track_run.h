@@ -36,6 +36,7 @@ struct Tracked {
   double loop_s = 0;  // from the first frame to the last, all stages
   bool interrupted = false;
   std::vector<std::string> warnings;
+  std::vector<std::string> doubtful;  // angles, and when
 };
 
 // `tracker`: tracker_options(). What is done goes to a checkpoint every few seconds, and when interrupted. Errors:

@@ -35,7 +35,8 @@ struct Person {
 };
 Person person(double sex, double weight_slider) {
   const Phenotype phenotype{.age_years = 30, .sex = sex, .height_m = 1.70};
-  const Sliders average = solve_sliders(assets(), phenotype).value();
+  Sliders average = solve_sliders(assets(), phenotype).value();
+  average.weight = average.muscle = 0.5;
   Sliders sliders = average;
   sliders.weight = weight_slider;
   sliders.muscle = 0.5 - std::abs(weight_slider - 0.5);

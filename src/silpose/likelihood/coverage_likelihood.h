@@ -35,10 +35,6 @@ namespace silpose {
 enum class Blur { k2 = 0, k4, k8, k16, k32 };
 inline constexpr std::array<int, 5> kBlurSigma = {2, 4, 8, 16, 32};
 
-// What an observation is compared by. A camera without keypoints has silhouettes alone with kBoth, and nothing at all
-// with kKeypoints.
-enum class EvidenceKind { kSilhouette, kKeypoints, kBoth };
-
 // The observations of one instant, as covered cells and keypoints.
 struct CoverageEvidence {
   static constexpr double kSubjectHeight = 280;  // pixels

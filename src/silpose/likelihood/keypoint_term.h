@@ -19,6 +19,10 @@
 
 namespace silpose {
 
+// What an observation is compared by. A camera without keypoints has silhouettes alone with kBoth, and nothing at all
+// with kKeypoints.
+enum class EvidenceKind { kSilhouette, kKeypoints, kBoth };
+
 struct KeypointWeights {
   double directions = 1.25;  // [tuned: nine takes of five people; 1 to 1.5 are alike]
   double places = 0.3;       // [tuned on the same]

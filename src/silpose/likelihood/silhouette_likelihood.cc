@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "silpose/base/check.h"
+#include "silpose/base/parallel.h"
 #include "silpose/shape/normalised_silhouette.h"
 
 namespace silpose {
@@ -25,6 +26,10 @@ double largest_scale(const PinholeCamera& camera) {
   constexpr double kMostSamples = 1 << 29;
   return std::sqrt(kMostSamples / kFullCoverage / camera.width / camera.height);
 }
+
+// [guess] Silhouettes weigh by `sharpness`, which is far less than their likelihood; so do keypoints, or few particles
+// would be left.
+constexpr double kKeypointShare = 0.2;
 
 }  // namespace
 
@@ -72,6 +77,13 @@ Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations
         view.area = view.observed.count();
       }
       view.trust = view.area > 0 ? observation.trust.overall : 0;
+      if (options_.evidence != EvidenceKind::kSilhouette && view.trust > 0) {
+        // What is cropped says nothing of where the body is, nor do places in the image of a pose that is elsewhere.
+        const double places = options_.comparison == Comparison::kCropped ? 0 : KeypointWeights{}.places;
+        auto term =
+            std::make_shared<const KeypointTerm>(body(), camera, observation, KeypointWeights{.places = places});
+        if (!term->empty()) view.keypoints = std::move(term);
+      }
     }
     evidence.views.push_back(std::move(view));
   }
@@ -121,7 +133,18 @@ void SilhouetteLikelihood::distances(const Evidence& evidence, const StateBatch&
 void SilhouetteLikelihood::log_likelihood(const Evidence& evidence, const StateBatch& states,
                                           std::span<double> out) const {
   accumulate(evidence, states, true, out);
-  for (double& value : out) value *= -options_.sharpness;
+  const bool silhouettes = options_.evidence != EvidenceKind::kKeypoints;
+  for (double& value : out) value *= silhouettes ? -options_.sharpness : 0;
+  const Skeleton& skeleton = body().skeleton;
+  for (const Evidence::View& view : evidence.views) {
+    if (!view.keypoints) continue;
+    parallel_for(out.size(), 64, [&](size_t begin, size_t end) {
+      for (size_t n = begin; n < end; ++n) {
+        const std::span pose(states.row(static_cast<Eigen::Index>(n)).data(), skeleton.dofs().size());
+        out[n] -= kKeypointShare * 0.5 * view.trust * view.keypoints->cost(skeleton, pose);
+      }
+    });
+  }
 }
 
 SilhouetteLikelihood::Derivative SilhouetteLikelihood::derivative(const Evidence& evidence,

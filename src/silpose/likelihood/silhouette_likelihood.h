@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "silpose/filter/state_batch.h"
+#include "silpose/likelihood/keypoint_term.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/shape/observation.h"
 
@@ -32,6 +33,7 @@ struct LikelihoodOptions {
   Metric metric = Metric::kPixelCount;
   double sharpness = 40;  // log-likelihood of a silhouette that shares no pixel with the observed one is -sharpness
   int resolution = 128;   // raster pixels along the longer side of the observed silhouette
+  EvidenceKind evidence = EvidenceKind::kSilhouette;
   // Errors: throws std::invalid_argument.
   void check() const;
 };
@@ -39,11 +41,12 @@ struct LikelihoodOptions {
 // The observations of one instant in the form that comparisons need.
 struct Evidence {
   struct View {
-    Window window;      // of the rasters below, in image pixels
-    Mask observed;      // raster; for Metric::kPixelCount
-    ByteImage covered;  // raster, 0 to kFullCoverage; for Metric::kCoverage
-    int64_t area = 0;   // set pixels, or the sum of what is covered
-    double trust = 0;   // 0: this camera has no say
+    Window window;                                  // of the rasters below, in image pixels
+    Mask observed;                                  // raster; for Metric::kPixelCount
+    ByteImage covered;                              // raster, 0 to kFullCoverage; for Metric::kCoverage
+    int64_t area = 0;                               // set pixels, or the sum of what is covered
+    double trust = 0;                               // 0: this camera has no say
+    std::shared_ptr<const KeypointTerm> keypoints;  // null: none
   };
   std::vector<View> views;  // [C]
 };
@@ -60,7 +63,7 @@ class SilhouetteLikelihood {
   // (0: equal, 1: disjoint). Shapes: states [N, D' >= D], only the first D columns are read; out [N].
   void distances(const Evidence& evidence, const StateBatch& states, std::span<double> out) const;
 
-  // -sharpness * trust * distance, summed over cameras. Shapes: as distances().
+  // -sharpness * trust * distance, summed over cameras, and what keypoints say besides. Shapes: as distances().
   void log_likelihood(const Evidence& evidence, const StateBatch& states, std::span<double> out) const;
 
   // log-likelihood and its derivative with respect to the pose, by central differences over `steps` [D].

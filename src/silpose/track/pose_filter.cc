@@ -7,6 +7,7 @@
 #include "silpose/base/state_bytes.h"
 #include "silpose/filter/estimate.h"
 #include "silpose/track/fitted_filter.h"
+#include "silpose/track/landmark_proposal.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/sampling_filter.h"
 
@@ -57,7 +58,8 @@ PoseSpread spread_of(const BodyModel& body, const ParticleSet& particles) {
 
 LikelihoodOptions likelihood_options(const TrackerOptions& options) {
   return {.metric = *options.metric == "coverage" ? Metric::kCoverage : Metric::kPixelCount,
-          .sharpness = *options.sharpness};
+          .sharpness = *options.sharpness,
+          .evidence = options.evidence};
 }
 
 LikelihoodOptions cropped_options(const TrackerOptions& options) {
@@ -67,6 +69,28 @@ LikelihoodOptions cropped_options(const TrackerOptions& options) {
   return cropped;
 }
 
+// Poses that the network of the first camera with keypoints recognises, the best few; none where it is not asked.
+class Recognition {
+ public:
+  explicit Recognition(const TrackerOptions& options) : num_dofs_(options.body->skeleton.num_dofs()) {
+    if (*options.regenerate_from != "network" || *options.regenerate == 0) return;
+    for (const PinholeCamera& camera : options.cameras) proposals_.emplace_back(options.body, camera);
+  }
+  [[nodiscard]] StateBatch poses(std::span<const Observation> observations) const {
+    constexpr int kCandidates = 4;
+    for (size_t c = 0; c < proposals_.size(); ++c) {
+      if (observations[c].keypoints.empty() || observations[c].box.empty()) continue;
+      Rng unused(0, 0);
+      return proposals_[c].propose(observations[c], kCandidates, unused);
+    }
+    return StateBatch(0, num_dofs_);
+  }
+
+ private:
+  Eigen::Index num_dofs_;
+  std::vector<LandmarkProposal> proposals_;  // [C], or none
+};
+
 // Root and pose in one state, compared on the whole image.
 class JointFilter final : public PoseFilter {
  public:
@@ -75,14 +99,15 @@ class JointFilter final : public PoseFilter {
         filter_(
             options, likelihood_,
             dofs_where(options.body->skeleton, [&](const Dof& dof) { return !options.root_fixed || !is_root(dof); }),
-            options.seed) {}
+            options.seed),
+        recognition_(options) {}
 
   void start(std::span<const StartingPose> starts) override {
     held_ = starts.front().pose;
     filter_.start(held_);
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
-    return filter_.step(likelihood_.prepare(observations), held_, dt_s, seconds);
+    return filter_.step(likelihood_.prepare(observations), recognition_.poses(observations), held_, dt_s, seconds);
   }
   FilterReport coast(double dt_s) override { return filter_.coast(dt_s); }
   const ParticleSet& particles() const override { return filter_.particles(); }
@@ -98,6 +123,7 @@ class JointFilter final : public PoseFilter {
  private:
   SilhouetteLikelihood likelihood_;
   SamplingFilter filter_;
+  Recognition recognition_;
   std::vector<double> held_;
 };
 
@@ -116,7 +142,8 @@ class TwoFilters final : public PoseFilter {
                                   return root_fixed_ ? !is_root(dof) : !(is_root(dof) && dof.is_translation);
                                 }),
                      options.seed),
-        root_filter_(options, whole_, dofs_where(body_->skeleton, is_root), options.seed + 1) {}
+        root_filter_(options, whole_, dofs_where(body_->skeleton, is_root), options.seed + 1),
+        recognition_(options) {}
 
   void start(std::span<const StartingPose> starts) override {
     estimate_ = starts.front().pose;
@@ -125,8 +152,9 @@ class TwoFilters final : public PoseFilter {
     particles_ = pose_filter_.particles();
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
-    FilterReport report = pose_filter_.step(cropped_.prepare(observations), estimate_, dt_s, seconds);
-    if (!root_fixed_) root_filter_.step(whole_.prepare(observations), pose_filter_.estimate(), dt_s, seconds);
+    FilterReport report =
+        pose_filter_.step(cropped_.prepare(observations), recognition_.poses(observations), estimate_, dt_s, seconds);
+    if (!root_fixed_) root_filter_.step(whole_.prepare(observations), {}, pose_filter_.estimate(), dt_s, seconds);
     combine();
     return report;
   }
@@ -171,6 +199,7 @@ class TwoFilters final : public PoseFilter {
   bool root_fixed_;
   SilhouetteLikelihood cropped_, whole_;
   SamplingFilter pose_filter_, root_filter_;
+  Recognition recognition_;
   ParticleSet particles_;
   std::vector<double> estimate_;
 };

@@ -59,8 +59,8 @@ void SamplingFilter::make_filter(StateBatch states) {
   }
 }
 
-FilterReport SamplingFilter::step(const Evidence& evidence, std::span<const double> held, double dt_s,
-                                  StepSeconds& seconds) {
+FilterReport SamplingFilter::step(const Evidence& evidence, const StateBatch& recognised, std::span<const double> held,
+                                  double dt_s, StepSeconds& seconds) {
   const Stopwatch whole;
   double propagating = 0, weighing = 0;
   const Propagate propagate = [&](StateBatch& states, uint64_t stream) {
@@ -80,11 +80,18 @@ FilterReport SamplingFilter::step(const Evidence& evidence, std::span<const doub
     hold(states, held);
     propagating += stopwatch.seconds();
   };
-  // New particles are drawn about the estimate, three times as wide as one frame's noise.
+  // New particles are drawn about what a network recognised, or the estimate, three times as wide as one frame's noise.
   const std::vector<double> centre = estimate();
   const Regenerate regenerate = [&](StateBatch& states, std::span<const int> rows, uint64_t stream) {
-    const StateBatch pose = Eigen::Map<const Eigen::RowVectorXd>(centre.data(), std::ssize(centre));
-    StateBatch fresh = motion_->states_from_poses(pose.replicate(std::ssize(rows), 1));
+    StateBatch poses(std::ssize(rows), std::ssize(centre));
+    for (Eigen::Index i = 0; i < poses.rows(); ++i) {
+      if (recognised.rows() > 0) {
+        poses.row(i) = recognised.row(i % recognised.rows());
+      } else {
+        poses.row(i) = Eigen::Map<const Eigen::RowVectorXd>(centre.data(), std::ssize(centre));
+      }
+    }
+    StateBatch fresh = motion_->states_from_poses(poses);
     std::vector<double> wide(motion_->deviation().begin(), motion_->deviation().end());
     for (double& deviation : wide) deviation *= 3;
     motion_->diffuse(fresh, wide, seed_ ^ kRegenerateSeed, stream);

@@ -28,7 +28,10 @@ class SamplingFilter {
   void start(std::span<const double> pose);
 
   // `held` [D]: where the DOF that do not move are now.
-  FilterReport step(const Evidence& evidence, std::span<const double> held, double dt_s, StepSeconds& seconds);
+  // `recognised` [K, D]: poses that a network sees; particles that are drawn anew come from them. K = 0: from around
+  // the estimate.
+  FilterReport step(const Evidence& evidence, const StateBatch& recognised, std::span<const double> held, double dt_s,
+                    StepSeconds& seconds);
   FilterReport coast(double dt_s);
 
   [[nodiscard]] const ParticleSet& particles() const;

@@ -29,6 +29,9 @@ struct StepReport {
   std::vector<Eigen::Vector3d> landmark_spread;  // [J + E] metres, as body's landmark_positions
   double effective_sample_size = 0;
   double visual_accuracy = 0;  // intersection over union in the first camera's image; 0 when coasted
+  // What is open: the probability that the network exchanged left and right (of the camera where it is highest), and
+  // the weight of hypotheses that face the other way, or have the legs exchanged.
+  double exchanged = 0, turned = 0, crossed = 0;
   std::vector<Trust> trust;    // [C]
   std::vector<Mask> observed;  // [C] the masks that were used
   StepSeconds seconds;
@@ -37,7 +40,7 @@ struct StepReport {
   // For to_bytes(): all but the masks.
   static auto members(auto& r) {
     return std::tie(r.frame_idx, r.time_ns, r.state, r.pose, r.mode, r.spread, r.landmark_spread,
-                    r.effective_sample_size, r.visual_accuracy, r.trust, r.seconds);
+                    r.effective_sample_size, r.visual_accuracy, r.exchanged, r.turned, r.crossed, r.trust, r.seconds);
   }
 };
 

@@ -49,8 +49,9 @@ struct Possible {
 };
 
 // The clip without the keypoints of frames in which the network exchanged left and right; empty where it never did.
-std::vector<ClipInstant> without_exchanged(std::span<const ClipInstant> clip) {
+std::vector<ClipInstant> without_exchanged(std::span<const ClipInstant> clip, std::vector<double>& most_exchanged) {
   std::vector<ClipInstant> judged;
+  most_exchanged.assign(clip.size(), 0.0);
   const size_t num_cameras = clip.empty() ? 0 : clip.front().observations.size();
   std::vector<int64_t> times;
   times.reserve(clip.size());
@@ -61,6 +62,7 @@ std::vector<ClipInstant> without_exchanged(std::span<const ClipInstant> clip) {
     for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints);
     const std::vector<double> exchanged = exchanged_sides(keypoints, times);
     for (size_t t = 0; t < clip.size(); ++t) {
+      most_exchanged[t] = std::max(most_exchanged[t], exchanged[t]);
       if (exchanged[t] <= kExchanged) continue;
       if (judged.empty()) judged.assign(clip.begin(), clip.end());
       judged[t].observations[c].keypoints = {};
@@ -75,7 +77,7 @@ class ClipTracker {
   ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress,
               const ClipResume& resume)
       : options_(options.resolved()),
-        judged_(without_exchanged(clip)),
+        judged_(without_exchanged(clip, exchanged_)),
         clip_(judged_.empty() ? clip : judged_),
         progress_(progress),
         resume_(resume),
@@ -312,7 +314,7 @@ class ClipTracker {
   }
 
   StepReport report_at(size_t t) const {
-    StepReport report{.frame_idx = clip_[t].frame_idx, .time_ns = clip_[t].time_ns};
+    StepReport report{.frame_idx = clip_[t].frame_idx, .time_ns = clip_[t].time_ns, .exchanged = exchanged_[t]};
     for (const Observation& observation : clip_[t].observations) {
       report.trust.push_back(observation.trust);
       report.observed.push_back(observation.mask);
@@ -364,6 +366,7 @@ class ClipTracker {
   static constexpr double kTransitionCap = 30;   // of one DOF
 
   TrackerOptions options_;
+  std::vector<double> exchanged_;    // [T] how probably the network exchanged left and right
   std::vector<ClipInstant> judged_;  // where keypoints had to go
   std::span<const ClipInstant> clip_;
   const ClipProgress& progress_;

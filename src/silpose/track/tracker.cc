@@ -85,10 +85,13 @@ struct Tracker::Impl {
   }
 
   // A camera whose network exchanged left and right tells nothing by its keypoints. Empty where none did.
-  std::vector<Observation> without_exchanged(std::span<const Observation> observations, double dt_s) {
+  std::vector<Observation> without_exchanged(std::span<const Observation> observations, double dt_s,
+                                             double& most_exchanged) {
     std::vector<Observation> judged;
     for (size_t c = 0; c < observations.size(); ++c) {
-      if (sides[c].step(observations[c].keypoints, dt_s) <= kExchanged) continue;
+      const double exchanged = sides[c].step(observations[c].keypoints, dt_s);
+      most_exchanged = std::max(most_exchanged, exchanged);
+      if (exchanged <= kExchanged) continue;
       if (judged.empty()) judged.assign(observations.begin(), observations.end());
       judged[c].keypoints = {};
       judged[c].landmarks.clear();
@@ -130,6 +133,33 @@ struct Tracker::Impl {
            line_across_pose(start.pose).dot(line_across_pose(last_pose)) < kTurnedCosine;
   }
 
+  // The weight of hypotheses that face away from the estimate, and of those whose legs are where its others are.
+  void name_ambiguities(StepReport& report) const {
+    if (!options.num_hypotheses) return;
+    const std::optional<int> right = options.body->skeleton.find_joint("right_foot"),
+                             left = options.body->skeleton.find_joint("left_foot");
+    if (!right || !left) return;
+    const ParticleSet& particles = filter->particles();
+    const std::vector<double> weights = particles.weights();
+    const auto feet_of = [&](std::span<const double> pose) {
+      const std::vector<Rigid3> joints = options.body->skeleton.forward_kinematics(pose);
+      return std::pair(joints[static_cast<size_t>(*right)].translation, joints[static_cast<size_t>(*left)].translation);
+    };
+    const Eigen::Vector3d line = line_across_pose(report.pose);
+    const auto [right_foot, left_foot] = feet_of(report.pose);
+    for (size_t i = 1; i < weights.size(); ++i) {
+      const std::span pose(particles.states.row(static_cast<Eigen::Index>(i)).data(), report.pose.size());
+      const auto [other_right, other_left] = feet_of(pose);
+      const double same = (right_foot - other_right).norm() + (left_foot - other_left).norm(),
+                   crossed = (right_foot - other_left).norm() + (left_foot - other_right).norm();
+      if (line.dot(line_across_pose(pose)) < 0) {
+        report.turned += weights[i];
+      } else if (crossed < 0.5 * same) {
+        report.crossed += weights[i];
+      }
+    }
+  }
+
   void summarise(std::span<const Observation> observations, StepReport& report) {
     report.pose = filter->estimate();
     const ParticleSet& particles = filter->particles();
@@ -142,6 +172,7 @@ struct Tracker::Impl {
       report.visual_accuracy = visual_accuracy(seen_by, observations, report.pose);
     }
     last_pose = report.pose;
+    name_ambiguities(report);
   }
 
   // Where the best hypothesis fits badly, new ones from scratch compete with it.
@@ -204,7 +235,7 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
     report.observed.push_back(observation.mask);
   }
   const double dt_s = t.steps == 0 ? 0 : static_cast<double>(time_ns - t.last_time_ns) * 1e-9;
-  const std::vector<Observation> judged = t.without_exchanged(given, dt_s);
+  const std::vector<Observation> judged = t.without_exchanged(given, dt_s, report.exchanged);
   const std::span<const Observation> observations = judged.empty() ? given : std::span(judged);
   const bool seen = any_has_a_say(observations);
   if (seen && t.started && static_cast<double>(time_ns - t.last_seen_ns) * 1e-9 > kLongestCoast_s) t.started = false;

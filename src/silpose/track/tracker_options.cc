@@ -28,6 +28,7 @@ TrackerOptions TrackerOptions::resolved() const {
   if (!all.sigma_deg) all.sigma_deg = *all.num_layers == 1 ? 4 : 2;
   if (!all.resampling) all.resampling = thesis ? "comb" : "systematic";
   if (!all.regenerate) all.regenerate = thesis ? 0.2 : 0.0;
+  if (!all.regenerate_from) all.regenerate_from = "random";
   if (!all.metric) all.metric = "pixel-count";
   if (!all.sharpness) all.sharpness = 100;
   if (!all.estimate) all.estimate = Estimate::kMean;
@@ -50,7 +51,8 @@ void TrackerOptions::check() const {
     require(*all.num_hypotheses >= 1 && *all.num_hypotheses <= 64,
             fmt::format("{} hypotheses, not within 1..64", *all.num_hypotheses));
     require(
-        !all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.metric && !all.sharpness,
+        !all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.regenerate_from && !all.metric &&
+            !all.sharpness,
         "motion, sigma, resampling, regenerate, metric and sharpness are of the sampling filters: give particles or "
         "layers");
     require(!all.estimate && !root_fixed && resample_below == 1,
@@ -63,6 +65,8 @@ void TrackerOptions::check() const {
     require(preset != "thesis" || *all.num_layers == 1, "preset thesis has one layer");
     require(std::isfinite(*all.sigma_deg) && *all.sigma_deg > 0 && *all.sigma_deg <= 90,
             fmt::format("sigma {} degrees, not within (0, 90]", *all.sigma_deg));
+    require(*all.regenerate_from == "random" || *all.regenerate_from == "network",
+            fmt::format("regenerate from '{}' is not random or network", *all.regenerate_from));
     require(*all.metric == "pixel-count" || *all.metric == "coverage",
             fmt::format("metric '{}' is not pixel-count or coverage", *all.metric));
     require(std::isfinite(*all.sharpness) && *all.sharpness > 0,

@@ -29,14 +29,15 @@ struct TrackerOptions {
   std::optional<bool> smooth;  // a batch fit over the clip afterwards; only track_clip() does it
   std::optional<bool> floor;   // nothing lies below y = 0; smoothed, what stands on it does not slide
   // The sampling filters: preset thesis, or any other with one of the first two set.
-  std::optional<int> num_particles;       // per layer; set alone it makes the filter plain
-  std::optional<int> num_layers;          // 1: plain
-  std::optional<std::string> motion;      // motion/motion_model.h
-  std::optional<double> sigma_deg;        // of a typical rotational DOF per 1/30 s; the others scale with it
-  std::optional<std::string> resampling;  // filter/resampling.h
-  double resample_below = 1;              // of n_eff / N; 1: every step
-  std::optional<double> regenerate;       // fraction of the particles, drawn anew around the estimate
-  std::optional<std::string> metric;      // "pixel-count" or "coverage" (likelihood/silhouette_likelihood.h)
+  std::optional<int> num_particles;            // per layer; set alone it makes the filter plain
+  std::optional<int> num_layers;               // 1: plain
+  std::optional<std::string> motion;           // motion/motion_model.h
+  std::optional<double> sigma_deg;             // of a typical rotational DOF per 1/30 s; the others scale with it
+  std::optional<std::string> resampling;       // filter/resampling.h
+  double resample_below = 1;                   // of n_eff / N; 1: every step
+  std::optional<double> regenerate;            // fraction of the particles, drawn anew around the estimate
+  std::optional<std::string> regenerate_from;  // "random": about the estimate; "network": about what it recognises
+  std::optional<std::string> metric;           // "pixel-count" or "coverage" (likelihood/silhouette_likelihood.h)
   std::optional<double> sharpness;
   std::optional<Estimate> estimate;
   bool root_fixed = false;          // the six root DOF stay where they started

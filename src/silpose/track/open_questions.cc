@@ -1,0 +1,119 @@
+#include "silpose/track/open_questions.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "silpose/geometry/rigid3.h"
+#include "silpose/track/keypoint_sides.h"
+
+namespace silpose {
+namespace {
+
+constexpr double kIntervalOfDeviation = 1.645;  // half of a 90 % interval
+constexpr double kGap_s = 0.2;                  // shorter gaps do not end what is doubtful
+
+struct Stretch {
+  double begin_s = 0, end_s = 0;
+  int frames = 0;
+  double worst = 0;
+};
+
+// Stretches of frames for which `value` (nothing: no) is at least `least`.
+template <typename Value>
+std::vector<Stretch> stretches(std::span<const StepReport> reports, double least, const Value& value) {
+  std::vector<Stretch> found;
+  for (const StepReport& report : reports) {
+    const std::optional<double> now = value(report);
+    if (!now || !(*now >= least)) continue;
+    const double time = report.time_s();
+    if (found.empty() || time - found.back().end_s > kGap_s) found.push_back({time, time});
+    found.back().end_s = time;
+    found.back().worst = std::max(found.back().worst, *now);
+    ++found.back().frames;
+  }
+  return found;
+}
+
+std::string times_of(std::span<const Stretch> some) {
+  constexpr size_t kMost = 4;
+  std::string text;
+  for (size_t i = 0; i < std::min(some.size(), kMost); ++i) {
+    text += fmt::format("{}{:.1f}-{:.1f}", i == 0 ? "" : ", ", some[i].begin_s, some[i].end_s);
+  }
+  return text + (some.size() > kMost ? " s and later" : " s");
+}
+
+int frames_of(std::span<const Stretch> some) {
+  int sum = 0;
+  for (const Stretch& stretch : some) sum += stretch.frames;
+  return sum;
+}
+
+}  // namespace
+
+std::vector<std::string> doubtful_angles(std::span<const StepReport> reports, const BodyModel& body, size_t most) {
+  constexpr std::string_view kJoints[] = {"thigh", "shin", "upper_arm", "forearm"};
+  const Skeleton& skeleton = body.skeleton;
+  const auto is_wanted = [&](const Dof& dof) {
+    const std::string_view joint = without_side(skeleton.joints()[static_cast<size_t>(dof.joint_idx)].name);
+    const bool is_known = skeleton.find_joint("right_shin").has_value();
+    return !dof.is_translation && (!is_known || std::ranges::count(kJoints, joint) > 0);
+  };
+  std::vector<std::pair<double, std::string>> found;
+  for (size_t j = 0; j < skeleton.joints().size(); ++j) {
+    const auto widest = [&](const StepReport& report) -> std::optional<double> {
+      if (report.spread.empty()) return std::nullopt;
+      double half = 0;
+      for (const int d : skeleton.joints()[j].dof_indices) {
+        // A twist about the bone shows in nothing but what hangs below it.
+        const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
+        if (!is_wanted(dof) || std::abs(dof.axis.y()) > 0.5) continue;
+        half = std::max(half, kIntervalOfDeviation * to_degrees(report.spread[static_cast<size_t>(d)]));
+      }
+      return half;
+    };
+    for (const Stretch& stretch : stretches(reports, kDoubtful_deg, widest)) {
+      if (stretch.end_s - stretch.begin_s < kShortest_s) continue;
+      found.emplace_back(stretch.worst,
+                         fmt::format("{} {:.1f}-{:.1f} s: within {:.0f} degrees", skeleton.joints()[j].name,
+                                     stretch.begin_s, stretch.end_s, stretch.worst));
+    }
+  }
+  std::ranges::stable_sort(found, [](const auto& a, const auto& b) { return a.first > b.first; });
+  if (found.size() > most) found.resize(most);
+  std::vector<std::string> lines;
+  for (auto& [worst, line] : found) lines.push_back(std::move(line));
+  return lines;
+}
+
+std::vector<std::string> ambiguities(std::span<const StepReport> reports) {
+  std::vector<std::string> lines;
+  const auto exchanged = stretches(reports, kExchanged, [](const StepReport& r) { return std::optional(r.exchanged); });
+  if (!exchanged.empty()) {
+    lines.push_back(
+        fmt::format("the network took left for right in {} frames ({}): its keypoints were left out there; look "
+                    "whether the sides are "
+                    "right",
+                    frames_of(exchanged), times_of(exchanged)));
+  }
+  const auto turned = stretches(reports, kOpenWeight, [](const StepReport& r) { return std::optional(r.turned); });
+  if (!turned.empty()) {
+    lines.push_back(
+        fmt::format("front and back are open in {} frames ({}): a pose that faces the other way is about as "
+                    "likely; --init with a pose, or a second camera, settles it",
+                    frames_of(turned), times_of(turned)));
+  }
+  const auto crossed = stretches(reports, kOpenWeight, [](const StepReport& r) { return std::optional(r.crossed); });
+  if (!crossed.empty()) {
+    lines.push_back(
+        fmt::format("left and right leg are open in {} frames ({}): a pose with the legs exchanged is about "
+                    "as likely",
+                    frames_of(crossed), times_of(crossed)));
+  }
+  return lines;
+}
+
+}  // namespace silpose

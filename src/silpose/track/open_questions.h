@@ -1,0 +1,26 @@
+// What a track leaves open, in words: joints whose angles are doubtful for a while, frames in which the network took
+// left for right, and where a second pose that faces elsewhere, or has its legs exchanged, is about as likely. Threads:
+// functions without state.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "silpose/body/body_model.h"
+#include "silpose/track/step_report.h"
+
+namespace silpose {
+
+// A claimed 90 % interval that is wider to either side than this is doubtful, and so is a second pose that is at least
+// this likely; what is doubtful for a shorter time is left out. [guess]
+inline constexpr double kDoubtful_deg = 30, kOpenWeight = 0.15, kShortest_s = 0.25;
+
+// "right_shin 3.1-4.0 s: within 35 degrees", the widest first, at most `most`: of the joints between long bones (those
+// whose names a body has in KeypointTerm's segments), or, for other bodies, of all that turn.
+std::vector<std::string> doubtful_angles(std::span<const StepReport> reports, const BodyModel& body, size_t most = 6);
+
+// One line for each kind of ambiguity: which frames, and what was done about it.
+std::vector<std::string> ambiguities(std::span<const StepReport> reports);
+
+}  // namespace silpose
