@@ -106,8 +106,14 @@ class StateReader {
     } else if constexpr (requires { value.has_value(); }) {
       bool is_there = false;
       if (!get(is_there)) return false;
-      value.reset();
-      return !is_there || get(value.emplace());
+      if (!is_there) {
+        value.reset();
+        return true;
+      }
+      typename T::value_type content{};  // not in place: GCC 14 takes what emplace() resets for uninitialised
+      if (!get(content)) return false;
+      value = std::move(content);
+      return true;
     } else {
       uint64_t count = 0;
       if (!get(count) || count > bytes_.size()) return false;

@@ -74,7 +74,7 @@ class Node {
     if (offsets == nullptr) return nodes;
     for (flatbuffers::uoffset_t i = 0; i < offsets->size(); ++i) {
       const uint8_t* place = offsets->Data() + i * sizeof(flatbuffers::uoffset_t);
-      const flatbuffers::uoffset_t offset = file_->verifier.VerifyOffset(place, 0);
+      const size_t offset = file_->verifier.VerifyOffset(place, 0);
       if (!believe(offset != 0)) return {};
       const auto node = at(*file_, reinterpret_cast<const flatbuffers::Table*>(place + offset));
       if (!node) return {};
@@ -177,7 +177,7 @@ Result<TfliteTensor> read_tensor(const Node& node, const std::vector<Node>& buff
   } else if (type == kFloat16) {
     const std::vector<uint16_t> halves = as_numbers<uint16_t>(*bytes);
     tensor.floats.reserve(halves.size());
-    for (const uint16_t half : halves) tensor.floats.push_back(static_cast<float>(cv::float16_t::fromBits(half)));
+    for (const uint16_t half : halves) tensor.floats.push_back(static_cast<float>(std::bit_cast<cv::float16_t>(half)));
   } else if (type == kInt32) {
     tensor.ints = as_numbers<int32_t>(*bytes);
   } else {
@@ -301,7 +301,7 @@ Result<TfliteFile> read_tflite(const std::filesystem::path& path) {
     return error("{}: not a TensorFlow Lite file", path.string());
   }
   Node::File file{.verifier = flatbuffers::Verifier(bytes.data(), bytes.size())};
-  const flatbuffers::uoffset_t root = file.verifier.VerifyOffset(size_t{0});
+  const size_t root = file.verifier.VerifyOffset(size_t{0});
   std::optional<Node> model;
   if (root != 0) model = Node::at(file, reinterpret_cast<const flatbuffers::Table*>(bytes.data() + root));
   if (!model) return error("{}: damaged or cut short", path.string());
