@@ -31,10 +31,15 @@ std::shared_ptr<const BodyModel> human() {
 }
 
 // A pose with every angle bent a little, standing.
-std::vector<double> bent_pose(const BodyModel& body, double amount) {
+// `apart`: arms and legs off the body. Where limbs overlap, ends of spans come and go, and E has steps that no
+// derivative knows of.
+std::vector<double> bent_pose(const BodyModel& body, double amount, bool apart = false) {
   std::vector<double> pose = standing_pose(body);
   for (size_t d = 0; d < pose.size(); ++d) {
-    if (!body.skeleton.dofs()[d].is_translation) pose[d] += amount * std::sin(1.7 * static_cast<double>(d) + 0.4);
+    const Dof& dof = body.skeleton.dofs()[d];
+    if (!dof.is_translation) pose[d] += amount * std::sin(1.7 * static_cast<double>(d) + 0.4);
+    if (apart && without_side(dof.name) == "upper_arm_rz") pose[d] += 0.9;
+    if (apart && without_side(dof.name) == "thigh_rz") pose[d] += 0.2;
   }
   body.skeleton.clamp(pose);
   return pose;
@@ -129,7 +134,7 @@ TEST_P(CoverageDerivative, AgreesWithFiniteDifferences) {
     camera.distortion = {GetParam().distortion, 0, 0.5 * GetParam().distortion, 0, 0};
   const CoverageLikelihood likelihood(body, cameras, 64);
   CoverageLikelihood::Scratch scratch(likelihood);
-  const std::vector<double> truth = bent_pose(*body, 0.3), pose = bent_pose(*body, 0.22);
+  const std::vector<double> truth = bent_pose(*body, 0.3, true), pose = bent_pose(*body, 0.22, true);
   std::vector<Observation> observations;
   for (const PinholeCamera& camera : cameras)
     observations.push_back(observation_of(render_silhouette(*body, camera, truth)));

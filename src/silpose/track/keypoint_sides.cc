@@ -12,17 +12,21 @@ namespace {
 
 // [guess] How often a network begins to exchange the sides and ends, per second, and how likely it does at first.
 constexpr double kBegins_per_s = 1, kEnds_per_s = 2, kAtFirst = 0.03;
-// [guess] How far a frame's line is off: by the network's own noise, and by a body that pivots within the memory. Where
-// it was seen, exchanged lines were up to 0.5 off the mirror image.
-constexpr double kNoise_rad = 0.45, kMemory_s = 0.12;
+// [guess] How far a frame's line is off by the network's own noise (where it was seen, exchanged lines were up to 0.5
+// off the mirror image), and how fast a body pivots: what is believed follows no faster.
+constexpr double kNoise_rad = 0.45, kFastest_rad_per_s = 5;
 constexpr double kOutlier = 0.01;        // of the likelihood: what tells nothing
 constexpr double kLongestGap_s = 0.5;    // after which the body may face anywhere
 constexpr double kLeastExchanged_s = 1;  // before which what came first is not doubted
 
 Eigen::Vector3d mirrored(const Eigen::Vector3d& line) { return {-line.x(), -line.y(), line.z()}; }
 
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
 double likelihood(const Eigen::Vector3d& line, const Eigen::Vector3d& expected) {
-  const double off = std::atan2(expected.cross(line).norm(), expected.dot(line)) / kNoise_rad;
+  const double off = angle_between(line, expected) / kNoise_rad;
   return kOutlier + std::exp(-0.5 * off * off);
 }
 
@@ -56,7 +60,9 @@ double KeypointSides::step(const Keypoints3D& keypoints, double dt_s) {
                if_exchanged = before * likelihood(*now, mirrored(*line_));
   exchanged_ = if_exchanged / (if_as_is + if_exchanged);
   const Eigen::Vector3d true_line = (1 - exchanged_) * *now + exchanged_ * mirrored(*now);
-  *line_ = (*line_ + (1 - std::exp(-passed_s / kMemory_s)) * (true_line - *line_)).stableNormalized();
+  const double off = angle_between(*line_, true_line);
+  const double share = std::min(1.0, kFastest_rad_per_s * passed_s / std::max(off, 1e-9));
+  *line_ = ((1 - share) * *line_ + share * true_line.stableNormalized()).stableNormalized();
   (exchanged_ > kExchanged ? exchanged_s_ : as_is_s_) += passed_s;
   if (exchanged_s_ > std::max(kLeastExchanged_s, as_is_s_)) {  // it was the beginning that was exchanged
     *line_ = mirrored(*line_);

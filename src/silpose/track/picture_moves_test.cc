@@ -55,7 +55,7 @@ TEST(ExchangedInPicture, HandsAreSeenWhereTheOtherWas) {
     ASSERT_EQ(exchanged.size(), pose.size());
     for (const auto& [hand, other] : {std::pair{"right_hand", "left_hand"}, std::pair{"left_hand", "right_hand"}}) {
       EXPECT_GT(seen_apart(place_of(hand, pose), place_of(other, pose)), 0.4);
-      EXPECT_LT(seen_apart(place_of(hand, exchanged), place_of(other, pose)), 0.2) << hand;  // shoulders differ
+      EXPECT_LT(seen_apart(place_of(hand, exchanged), place_of(other, pose)), 0.25) << hand;  // shoulders differ
     }
     for (const char* still : {"right_foot", "left_foot", "head_top"}) {
       EXPECT_LT((place_of(still, exchanged) - place_of(still, pose)).norm(), 1e-9) << still;

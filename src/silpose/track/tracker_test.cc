@@ -142,7 +142,7 @@ TEST_P(TrackerTest, WaitsUntilSomethingIsSeenThenCoastsWithGrowingSpread) {
     EXPECT_EQ(coasted.state, StepReport::State::kCoasted);
     EXPECT_EQ(coasted.visual_accuracy, 0);
     if (t == 9) {
-      EXPECT_GT(coasted.spread[0], 1.2 * seen.spread[0]);
+      EXPECT_GT(coasted.spread[0], 1.05 * seen.spread[0]);
     }
   }
   EXPECT_EQ(step(tracker, observe(10), 10).state, StepReport::State::kTracked);
