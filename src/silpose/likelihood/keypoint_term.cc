@@ -209,7 +209,9 @@ double KeypointTerm::add(const Skeleton& skeleton, std::span<const double> pose,
     }
   }
   gradient.noalias() += trust * jacobian.leftCols(row) * residual.head(row);
-  hessian.noalias() += trust * jacobian.leftCols(row) * jacobian.leftCols(row).transpose();
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(hessian.rows(), hessian.cols());
+  lower.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.leftCols(row), trust);
+  hessian += lower.selfadjointView<Eigen::Lower>();
   return trust * sum;
 }
 
