@@ -57,6 +57,9 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   if (options.evidence == "landmarks" && !source->finds_landmarks()) {
     return error("--evidence landmarks: {} finds none; --segmenter learned does", source->background());
   }
+  if (tracker.regenerate_from == "network" && !source->finds_landmarks()) {
+    return error("--regenerate-from network: {} finds no keypoints; --segmenter learned does", source->background());
+  }
   tracker.landmarks = (options.init == "auto" || options.init == "landmarks") && source->finds_landmarks();
 
   TrackWriter writer(directory->path(), *body, cameras->cameras, source->video().fps(), options.draw_floor);
