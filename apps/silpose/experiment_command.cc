@@ -11,6 +11,7 @@
 #include "apps/silpose/experiment_directory.h"
 #include "apps/silpose/run_facts.h"
 #include "silpose/experiment/engine.h"
+#include "silpose/experiment/recorded_clip.h"
 #include "silpose/experiment/results.h"
 #include "silpose/experiment/tracking_runs.h"
 #include "silpose_commit.h"
@@ -73,9 +74,17 @@ Result<Outcome> list_experiments(const ExperimentOptions& options) {
   return outcome;
 }
 
-// Motion-capture files that a grid needs: told before hours of work, not after.
-Result<void> check_motion_files(const Grid& grid, const fs::path& data) {
+// Motion-capture files and recorded clips that a grid needs: told before hours of work, not after.
+Result<void> check_data_files(const Grid& grid, const fs::path& data) {
   for (const GridCell& cell : grid.cells) {
+    if (cell.settings.is_recorded()) {
+      if (data.empty()) {
+        return error("{}: needs recorded clips ({} and others): give their folder with --data", grid.name,
+                     cell.settings.clip[0]);
+      }
+      if (Result<void> found = check_clip_files(cell.settings, data); !found) return found;
+      continue;
+    }
     const std::string& motion = cell.settings.motion;
     if (!is_motion_file(motion)) continue;
     if (data.empty()) {
@@ -107,7 +116,7 @@ Result<std::vector<Grid>> read_grids(const ExperimentOptions& options) {
     for (const Grid& other : grids) {
       if (other.name == grid->name) throw UsageError(fmt::format("{}: is there twice", grid->name));
     }
-    const Result<void> found = check_motion_files(*grid, options.data);
+    const Result<void> found = check_data_files(*grid, options.data);
     if (!found) return found.failure();
     grids.push_back(std::move(*grid));
   }
@@ -128,7 +137,8 @@ Result<Outcome> run_experiments(const ExperimentOptions& options, const CommonOp
   outcome.json = run_facts(common);
   outcome.json["out"] = options.out;
   outcome.json["experiments"] = nlohmann::ordered_json::object();
-  TrackingRuns tracking([&](const std::string& model) { return choose_body(model, console); }, options.data);
+  TrackingRuns tracking([&](const std::string& model) { return choose_body(model, console); }, options.data,
+                        data_directory() / "networks");
   const Runner runner = [&](const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on) {
     return tracking.run(settings, seed, go_on);
   };
@@ -173,7 +183,8 @@ Command add_experiment(CLI::App& program, const CommonOptions& common) {
   app->add_option("--seeds", options->seeds, "How many seeds, counted from --seed; default: as the experiment says")
       ->check(CLI::Range(1, 10'000));
   app->add_flag("--resume", options->resume, "Go on from the runs in DIR.partial");
-  app->add_option("--data", options->data, "Folder of motion-capture files, for experiments that need them");
+  app->add_option("--data", options->data,
+                  "Folder of motion-capture files or recorded clips, for experiments that need them");
   return {app, [options, &common](Console& console) { return run_experiments(*options, common, console); }};
 }
 

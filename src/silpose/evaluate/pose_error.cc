@@ -68,4 +68,11 @@ std::optional<double> aligned_distance(const Eigen::Matrix3Xd& points, const Eig
   return mean_distance((truth_from_points * points.colwise().homogeneous()).topRows<3>(), truth);
 }
 
+std::optional<double> flexion_deg(const Eigen::Vector3d& above, const Eigen::Vector3d& joint,
+                                  const Eigen::Vector3d& below) {
+  const Eigen::Vector3d incoming = joint - above, outgoing = below - joint;
+  if (incoming.isZero(0) || outgoing.isZero(0)) return std::nullopt;
+  return to_degrees(std::atan2(incoming.cross(outgoing).norm(), incoming.dot(outgoing)));
+}
+
 }  // namespace silpose

@@ -27,4 +27,9 @@ double mean_distance(const Eigen::MatrixXd& points, const Eigen::MatrixXd& truth
 // Nothing when K < 3 or either set has no extent. Source: umeyama1991.
 std::optional<double> aligned_distance(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& truth);
 
+// How far a joint is bent, degrees: 180 minus the angle between the directions to its two neighbours (knee: hip and
+// ankle); 0 where the three lie on a line. Nothing where two of them are in one place.
+std::optional<double> flexion_deg(const Eigen::Vector3d& above, const Eigen::Vector3d& joint,
+                                  const Eigen::Vector3d& below);
+
 }  // namespace silpose

@@ -1,8 +1,8 @@
 #include "silpose/evaluate/pose_error.h"
 
-#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "silpose/base/rng.h"
@@ -18,7 +18,7 @@ TEST(PoseError, ByHand) {
   std::vector<double> truth(8, 0.0), pose = truth;
   EXPECT_EQ(pose_error_npsu(skeleton, pose, truth), 0);
   EXPECT_EQ(pose_error_deg(skeleton, pose, truth), 0);
-  pose[0] = 1;                      // translations count in NPSU alone
+  pose[0] = 1;  // translations count in NPSU alone
   pose[4] = to_radians(3);
   pose[7] = to_radians(-4);
   EXPECT_NEAR(pose_error_deg(skeleton, pose, truth), 5, 1e-12);
@@ -68,6 +68,15 @@ TEST(AlignedDistance, NeedsThreePointsApart) {
   const Eigen::Matrix3Xd two = Eigen::Matrix3Xd::Random(3, 2), three = Eigen::Matrix3Xd::Random(3, 3);
   EXPECT_FALSE(aligned_distance(two, two).has_value());
   EXPECT_FALSE(aligned_distance(Eigen::Matrix3Xd::Ones(3, 3), three).has_value());
+}
+
+TEST(FlexionDeg, ByHand) {
+  const Eigen::Vector3d hip(0, 2, 0), knee(0, 1, 0);
+  EXPECT_NEAR(flexion_deg(hip, knee, {0, -3, 0}).value(), 0, 1e-12);
+  EXPECT_NEAR(flexion_deg(hip, knee, {0, 1, -5}).value(), 90, 1e-12);
+  EXPECT_NEAR(flexion_deg(hip, knee, {0, 2, 1}).value(), 135, 1e-12);
+  EXPECT_NEAR(flexion_deg(hip, knee, {1e-5, -3, 0}).value(), to_degrees(1e-5 / 4), 1e-9);
+  EXPECT_FALSE(flexion_deg(hip, knee, knee).has_value());
 }
 
 }  // namespace

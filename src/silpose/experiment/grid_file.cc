@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <set>
 #include <string_view>
@@ -86,35 +87,77 @@ Result<void> keep_only(const toml::table& chosen, const std::string& file, std::
   return {};
 }
 
-// Every combination of the axes' values, the last axis fastest; `last` wins over everything.
-Result<void> make_cells(const std::vector<Axis>& axes, const toml::table* last, const RunSettings& base,
-                        const std::string& file, Grid& grid) {
+// A cell that is being put together.
+struct Growing {
+  GridCell cell;
+  GivenSettings given;
+};
+
+// [[without]] AXIS = [labels]: cells that have one of these labels on each of the axes named are left out.
+using Without = std::map<std::string, Texts>;
+
+Result<Without> read_without(const toml::table& table, const std::vector<Axis>& axes, const std::string& file) {
+  Without without;
+  for (const auto& [key, node] : table) {
+    const std::string name(key.str());
+    const Entry entry{node, fmt::format("{}: without.{}", file, name)};
+    const auto axis = std::ranges::find(axes, name, &Axis::name);
+    if (axis == axes.end()) return error("{}: no such axis", entry.where);
+    const Result<Texts> labels = texts_of(entry);
+    if (!labels) return labels.failure();
+    for (const std::string& label : *labels) {
+      if (std::ranges::find(axis->values, label, &AxisValue::label) == axis->values.end()) {
+        return error("{}: the axis has no '{}'", entry.where, label);
+      }
+    }
+    without.emplace(name, *labels);
+  }
+  if (without.empty()) return error("{}: without: names no axis", file);
+  return without;
+}
+
+bool is_left_out(const GridCell& cell, const std::vector<GridAxis>& axes, const std::vector<Without>& all) {
+  return std::ranges::any_of(all, [&](const Without& without) {
+    return std::ranges::all_of(without, [&](const auto& entry) {
+      const auto axis = std::ranges::find(axes, entry.first, &GridAxis::name) - axes.begin();
+      return std::ranges::count(entry.second, cell.labels[static_cast<size_t>(axis)]) > 0;
+    });
+  });
+}
+
+// Every combination of the axes' values but those left out, the last axis fastest; `last` wins over everything.
+Result<void> make_cells(const std::vector<Axis>& axes, const std::vector<Without>& left_out, const toml::table* last,
+                        const Growing& base, const std::string& file, Grid& grid) {
   for (const Axis& axis : axes) {
     grid.axes.push_back({axis.name, {}});
     for (const AxisValue& value : axis.values) grid.axes.back().labels.push_back(value.label);
   }
-  std::vector<GridCell> cells = {{{}, base}};
+  std::vector<Growing> cells = {base};
   for (const Axis& axis : axes) {
-    std::vector<GridCell> longer;
-    for (const GridCell& cell : cells) {
+    std::vector<Growing> longer;
+    for (const Growing& shorter : cells) {
       for (const AxisValue& value : axis.values) {
-        GridCell next = cell;
-        next.labels.push_back(value.label);
+        Growing next = shorter;
+        next.cell.labels.push_back(value.label);
         const std::string where = fmt::format("{}: axis '{}', '{}'", file, axis.name, value.label);
-        const Result<void> applied = apply_settings(value.settings, where, next.settings);
+        const Result<void> applied = apply_settings(value.settings, where, next.cell.settings, &next.given);
         if (!applied) return applied.failure();
         longer.push_back(std::move(next));
       }
     }
     cells = std::move(longer);
   }
-  if (last != nullptr) {
-    for (GridCell& cell : cells) {
-      const Result<void> applied = apply_settings(*last, file + ": quick.run", cell.settings);
+  for (auto& [cell, given] : cells) {
+    if (is_left_out(cell, grid.axes, left_out)) continue;
+    if (last != nullptr) {
+      const Result<void> applied = apply_settings(*last, file + ": quick.run", cell.settings, &given);
       if (!applied) return applied.failure();
     }
+    const Result<void> checked = check_settings(given, cell.settings);
+    if (!checked) return checked.failure();
+    grid.cells.push_back(std::move(cell));
   }
-  grid.cells = std::move(cells);
+  if (grid.cells.empty()) return error("{}: without: leaves no cell", file);
   return {};
 }
 
@@ -258,7 +301,7 @@ Result<Grid> read_grid(const std::filesystem::path& path, bool quick_wanted) {
   Grid grid;
   grid.name = path.stem().string();
   grid.folder = path.parent_path();
-  RunSettings base;
+  Growing base;
   for (const auto& [key, node] : root) {
     const Entry entry{node, fmt::format("{}: {}", file, key.str())};
     Result<void> taken;
@@ -269,8 +312,8 @@ Result<Grid> read_grid(const std::filesystem::path& path, bool quick_wanted) {
     } else if (key == "run") {
       const toml::table* const run = node.as_table();
       taken = run == nullptr ? Result<void>(error("{}: a table is wanted", entry.where))
-                             : apply_settings(*run, entry.where, base);
-    } else if (key != "axis" && key != "table" && key != "plot" && key != "quick") {
+                             : apply_settings(*run, entry.where, base.cell.settings, &base.given);
+    } else if (key != "axis" && key != "table" && key != "plot" && key != "quick" && key != "without") {
       taken = error("{}: no such key", entry.where);
     }
     if (!taken) return taken.failure();
@@ -287,11 +330,19 @@ Result<Grid> read_grid(const std::filesystem::path& path, bool quick_wanted) {
     if (!axis) return axis.failure();
     axes.push_back(std::move(*axis));
   }
+  std::vector<Without> left_out;
+  const auto without_tables = tables_of(root, "without", file);
+  if (!without_tables) return without_tables.failure();
+  for (const toml::table* const table : *without_tables) {
+    Result<Without> without = read_without(*table, axes, file);
+    if (!without) return without.failure();
+    left_out.push_back(std::move(*without));
+  }
   if (quick_wanted && quick->axes != nullptr) {
     const Result<void> kept = keep_only(*quick->axes, file, axes);
     if (!kept) return kept.failure();
   }
-  const Result<void> made = make_cells(axes, quick_wanted ? quick->run : nullptr, base, file, grid);
+  const Result<void> made = make_cells(axes, left_out, quick_wanted ? quick->run : nullptr, base, file, grid);
   if (!made) return made.failure();
 
   const auto tables = tables_of(root, "table", file), plots = tables_of(root, "plot", file);

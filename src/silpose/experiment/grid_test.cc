@@ -1,5 +1,6 @@
 #include "silpose/experiment/grid.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -72,12 +73,49 @@ TEST(ReadGrid, WithoutAxesThereIsOneCell) {
   EXPECT_EQ(grid.cells[0].settings, RunSettings());
 }
 
+// Two recorded clips, and a method that is of the first alone.
+const std::string kClips = std::string(R"(
+[run]
+camera = "cameras.toml"
+[[axis]]
+name = "clip"
+values = [{ label = "one", clip = ["a.mp4"], camera_names = ["a"], truth = "a", background = ["a.jpg"] },
+          { label = "two", clip = ["a.mp4", "b.mp4"], truth = "b", frames = 7 }]
+[[axis]]
+name = "method"
+values = [{ label = "both" }, { label = "network", evidence = "network" }]
+[[without]]
+clip = ["two"]
+method = ["network"]
+[quick]
+axes = { clip = ["two"], method = ["both"] }
+)") + kTable;
+
+TEST(ReadGrid, RecordedClipsWithoutTheCellsLeftOut) {
+  const Grid grid = read(kClips).value();
+  ASSERT_EQ(grid.cells.size(), 3u);
+  EXPECT_THAT(grid.cells[1].labels, ElementsAre("one", "network"));
+  EXPECT_THAT(grid.cells[2].labels, ElementsAre("two", "both"));
+  EXPECT_TRUE(grid.cells[2].settings.is_recorded());
+  EXPECT_THAT(grid.cells[2].settings.clip, ElementsAre("a.mp4", "b.mp4"));
+  EXPECT_THAT(grid.cells[0].settings.camera_names, ElementsAre("a"));
+  EXPECT_THAT(grid.cells[0].settings.background, ElementsAre("a.jpg"));
+  EXPECT_EQ(grid.cells[0].settings.segmenter, "learned");
+  EXPECT_EQ(grid.cells[0].settings.evidence, "both");
+  EXPECT_EQ(grid.cells[2].settings.frames, 7);
+  EXPECT_EQ(read(kClips, true).value().cells.size(), 1u);
+}
+
 struct BadGrid {
   std::string text, says;
 };
 
 TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
   const std::string axis = "[[axis]]\nname = \"view\"\n";
+  const auto clip = [](const std::string& more, bool names_one = true) {
+    return fmt::format("run = {{ camera = \"c.toml\", truth = \"t\", {}{} }}\n",
+                       names_one ? "clip = [\"a.mp4\"], " : "", more);
+  };
   const std::vector<BadGrid> all = {
       {"run = { frames = -3 }\n", "run.frames: a whole number"},
       {"run = { frames = 2.5 }\n", "run.frames: a whole number"},
@@ -107,6 +145,23 @@ TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
       {"[[plot]]\nname = \"p\"\nx = \"frame\"\n", "plot.figure: is missing"},
       {"[[plot]]\nname = \"p\"\nx = \"clip\"\nfigure = \"iou\"\n", "no axis 'clip'"},
       {"seeds = = 3\n", "line 1"},
+      {"run = { truth = \"a\" }\n", "run.truth: needs clip"},
+      {"run = { clip = [] }\n", "run.clip: needs clip, a list of videos"},
+      {"run = { clip = \"a.mp4\" }\n", "run.clip: a list of texts"},
+      {"run = { clip = [\"a.mp4\"] }\n", "run.clip: needs camera"},
+      {"run = { clip = [\"a.mp4\"], camera = \"c.toml\" }\n", "run.clip: needs truth"},
+      {clip("motion = \"sway\""), "run.motion: not together with clip"},
+      {clip("mask_noise = \"none\""), "run.mask_noise: not together with clip"},
+      {clip("camera_names = [\"a\", \"b\"]"), "run.clip: 2 camera_names for 1 videos"},
+      {clip("background = [\"a\", \"b\"]"), "run.clip: 2 backgrounds for 1 videos"},
+      {clip("evidence = \"guess\""), "run.evidence: 'guess' is not one of"},
+      {clip("segmenter = \"masks\", evidence = \"landmarks\""), "evidence = \"landmarks\" needs segmenter"},
+      {clip("clip = [\"a\", \"b\"], evidence = \"network\"", false), "evidence = \"network\" is of one video"},
+      {"without = 3\n", "without: [[without]] is wanted"},
+      {"[[without]]\n", "without: names no axis"},
+      {"[[without]]\nclip = [\"a\"]\n", "without.clip: no such axis"},
+      {axis + "key = \"view\"\nvalues = [\"side\"]\n[[without]]\nview = [\"front\"]\n", "the axis has no 'front'"},
+      {axis + "key = \"view\"\nvalues = [\"side\"]\n[[without]]\nview = [\"side\"]\n", "without: leaves no cell"},
   };
   for (const BadGrid& bad : all) {
     const bool has_table = bad.text.find("[[table]]") != std::string::npos;
@@ -128,6 +183,11 @@ TEST(RunSettings, TextTellsEverySettingApart) {
   EXPECT_NE(settings_text({.smooth = false}), plain);
   EXPECT_NE(settings_text({.body_weight = 1.15}), plain);
   EXPECT_EQ(settings_text({}), plain);
+  const std::string clip = settings_text({.clip = {"a.mp4"}});
+  EXPECT_NE(clip, plain);
+  EXPECT_NE(settings_text({.clip = {"b.mp4"}}), clip);
+  EXPECT_NE(settings_text({.clip = {"a.mp4"}, .evidence = "network"}), clip);
+  EXPECT_NE(settings_text({.clip = {"a.mp4"}, .floor = false}), clip);
   EXPECT_TRUE(is_motion_file("cmu_bvh/02_01_walk.bvh"));
   EXPECT_FALSE(is_motion_file("dof:6"));
 }

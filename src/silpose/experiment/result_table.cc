@@ -241,6 +241,7 @@ Result<ResultTable> make_table(const Grid& grid, const TableDescription& descrip
   };
   for (const Labels& labels : combinations(grid, description.rows)) {
     const auto chosen = choose(grid, runs, description.rows, labels);
+    if (chosen.empty()) continue;  // all its cells are left out
     for (const std::string& member : members) {
       std::vector<Cell> row(labels.begin(), labels.end());
       if (is_family) row.emplace_back(member);

@@ -24,6 +24,17 @@ std::string settings_text(const RunSettings& settings) {
   json["mask_noise"] = settings.mask_noise;
   json["mask_iou"] = settings.mask_iou;
   if (settings.faults_known) json["faults_known"] = true;  // results from before there was a choice stay good
+  if (settings.is_recorded()) {
+    json["clip"] = settings.clip;
+    json["camera"] = settings.camera;
+    json["camera_names"] = settings.camera_names;
+    json["truth"] = settings.truth;
+    json["truth_above"] = optional(settings.truth_above);
+    json["segmenter"] = settings.segmenter;
+    json["background"] = settings.background;
+    json["evidence"] = settings.evidence;
+    json["floor"] = optional(settings.floor);
+  }
   json["preset"] = settings.preset;
   json["smooth"] = optional(settings.smooth);
   json["hypotheses"] = optional(settings.hypotheses);

@@ -1,6 +1,6 @@
-// RunSettings: all that tells one run of an experiment from another, apart from its seed: the sequence, how its masks
-// are degraded, and the tracker. These are the keys of [run] in experiments/NAME.toml (docs/formats.md).
-// Threads: values and functions without state.
+// RunSettings: all that tells one run of an experiment from another, apart from its seed: the sequence and how its
+// masks are degraded, or the recorded clip and how it is segmented; and the tracker. These are the keys of [run] in
+// experiments/NAME.toml (docs/formats.md). Threads: values and functions without state.
 #pragma once
 
 #include <array>
@@ -26,6 +26,17 @@ struct RunSettings {
   double mask_iou = 0.9;            // of edge: with the true masks, on average
   bool faults_known = false;        // pixels that are wrong, and those beside them, are marked as unsure: the most that
                                     // a segmenter's confidence could give
+  // A recorded clip in place of both. Paths are relative to the data folder.
+  std::vector<std::string> clip;          // one video a camera, in step; empty: the run is on a rendered sequence
+  std::string camera;                     // calibration: .toml, or .json as docs/formats.md says
+  std::vector<std::string> camera_names;  // of the calibration, one a video; empty: all, in their order
+  std::string truth;                      // a folder with joints.csv, or with surfaces as numbered .ply files
+  std::optional<double> truth_above;      // m: of surfaces, only what lies above this y of the world counts
+  std::string segmenter = "learned";      // learned, background, or masks: the videos are masks
+  std::vector<std::string> background;    // for `background`: auto, or a picture of the empty scene, one a video
+  std::string evidence = "both";          // silhouette, landmarks, both; network: no tracker runs, the network's own
+                                          // keypoints are scored
+  std::optional<bool> floor;              // the world's y = 0 is the floor; unset: as the preset has it
   // The tracker.
   std::string preset = "default";
   std::optional<bool> smooth;
@@ -35,6 +46,7 @@ struct RunSettings {
   double body_height = 1, body_weight = 1;  // the tracker's body over the true one
   std::string start = "tracker";            // "tracker": by itself; "truth": the true first pose is given
 
+  [[nodiscard]] bool is_recorded() const { return !clip.empty(); }
   bool operator==(const RunSettings&) const = default;
 };
 

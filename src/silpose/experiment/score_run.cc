@@ -2,45 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/evaluate/evaluation.h"
 #include "silpose/evaluate/interval_coverage.h"
+#include "silpose/experiment/score_parts.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/synth/sequence_files.h"
 
 namespace silpose {
 namespace {
 
-constexpr double kAbsent = std::numeric_limits<double>::quiet_NaN();
-
 double time_of(const SyntheticSequence& truth, int64_t frame) { return static_cast<double>(frame) / truth.fps; }
-
-// The estimates as the tables that a result directory would hold.
-Recorded recorded_of(const SyntheticSequence& truth, const BodyModel& body, std::span<const StepReport> reports) {
-  Recorded result;
-  result.poses.emplace();
-  result.joints.emplace();
-  const std::vector<std::string> names = landmark_names(body);
-  for (const StepReport& report : reports) {
-    if (report.pose.empty()) continue;
-    const double time_s = time_of(truth, report.frame_idx);
-    result.poses->rows.push_back({.frame = report.frame_idx, .time_s = time_s, .values = report.pose});
-    const std::vector<Eigen::Vector3d> positions = landmark_positions(body, report.pose);
-    for (size_t i = 0; i < names.size(); ++i) {
-      const auto pixel = truth.cameras[0].project(positions[i]);
-      result.joints->rows.push_back({.frame = report.frame_idx,
-                                     .time_s = time_s,
-                                     .joint = names[i],
-                                     .x_in_world = positions[i],
-                                     .pixel = pixel.value_or(Eigen::Vector2d(kAbsent, kAbsent))});
-    }
-  }
-  return result;
-}
 
 // The same joints without the hips: those of the thesis' 2D error.
 JointTable without_hips(const JointTable& joints) {
@@ -67,26 +42,6 @@ std::vector<double> overlaps(const SyntheticSequence& truth, const BodyModel& bo
     }
   });
   return overlap;
-}
-
-void add_mean_and_deviation(const std::string& name, const std::vector<std::vector<double>>& rows, size_t column,
-                            RunResult& run) {
-  double sum = 0, squares = 0, count = 0;
-  for (const std::vector<double>& row : rows) {
-    if (std::isfinite(row[column])) sum += row[column], count += 1;
-  }
-  if (count == 0) return;
-  for (const std::vector<double>& row : rows) {
-    if (std::isfinite(row[column])) squares += (row[column] - sum / count) * (row[column] - sum / count);
-  }
-  run.scores[name] = sum / count;
-  run.scores[name + "_sd"] = std::sqrt(squares / count);
-}
-
-double mean_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
 }
 
 // How often the truth lies inside the claimed intervals.
@@ -129,16 +84,6 @@ void add_coverage(const SyntheticSequence& truth, const BodyModel& body, std::sp
   run.scores["coverage_joint"] = mean_of(joints);
 }
 
-// Lost, and started well, by the root-aligned errors of all frames [T]; NaN where there is no pose.
-void add_verdicts(const std::vector<double>& root_errors, RunResult& run) {
-  const size_t last = std::min(root_errors.size(), static_cast<size_t>(kLostFrames));
-  const bool lost = std::all_of(root_errors.end() - static_cast<std::ptrdiff_t>(last), root_errors.end(),
-                                [](double error_mm) { return !(error_mm <= kLostMm); });
-  run.scores["lost"] = lost ? 1 : 0;
-  const size_t settled = std::min(root_errors.size(), static_cast<size_t>(kBasinFrames)) - 1;
-  run.scores["in_basin"] = root_errors[settled] < kBasinMm ? 1 : 0;
-}
-
 }  // namespace
 
 Result<RunResult> score_run(const SyntheticSequence& truth, const BodyModel& tracker_body,
@@ -151,7 +96,8 @@ Result<RunResult> score_run(const SyntheticSequence& truth, const BodyModel& tra
     check(report.frame_idx >= truth.lead_in && report.frame_idx < truth.num_frames(), "score_run: frame {} of {}",
           report.frame_idx, truth.num_frames());
   }
-  const Recorded result = recorded_of(truth, tracker_body, reports);
+  const Recorded result = recorded_of(tracker_body, truth.cameras[0], reports,
+                                      [&](const StepReport& report) { return time_of(truth, report.frame_idx); });
   Recorded recorded_truth, without;
   recorded_truth.poses = true_poses(truth, truth.num_frames());
   recorded_truth.joints = true_joints(truth, truth.num_frames());

@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <map>
+#include <string_view>
 
 #include "silpose/experiment/toml_entry.h"
 
@@ -46,6 +49,22 @@ const std::map<std::string, Setter, std::less<>>& setters() {
        }},
       {"mask_iou", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.05, 0.999), run.mask_iou); }},
       {"faults_known", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.faults_known); }},
+      {"clip", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.clip); }},
+      {"camera", [](const TomlEntry& e, RunSettings& run) { return take(text_of(e), run.camera); }},
+      {"camera_names", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.camera_names); }},
+      {"truth", [](const TomlEntry& e, RunSettings& run) { return take(text_of(e), run.truth); }},
+      {"truth_above",
+       [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, -1000, 1000), run.truth_above); }},
+      {"segmenter",
+       [](const TomlEntry& e, RunSettings& run) {
+         return take(word_of(e, {"learned", "background", "masks"}), run.segmenter);
+       }},
+      {"background", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.background); }},
+      {"evidence",
+       [](const TomlEntry& e, RunSettings& run) {
+         return take(word_of(e, {"silhouette", "landmarks", "both", "network"}), run.evidence);
+       }},
+      {"floor", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.floor); }},
       {"preset",
        [](const TomlEntry& e, RunSettings& run) {
          return take(word_of(e, {"default", "accurate", "thesis"}), run.preset);
@@ -66,15 +85,54 @@ const std::map<std::string, Setter, std::less<>>& setters() {
   return kSetters;
 }
 
+// Settings that only runs on a recorded clip have, and those that only runs on a rendered sequence have.
+constexpr std::array<std::string_view, 9> kOfClips = {"clip",       "camera",    "camera_names", "truth", "truth_above",
+                                                      "background", "segmenter", "evidence",     "floor"};
+constexpr std::array<std::string_view, 16> kOfSequences = {
+    "motion",   "fps",        "amplitude_deg", "period_s", "range",        "views",       "view",        "size",
+    "focal_px", "distance_m", "mask_noise",    "mask_iou", "faults_known", "body_height", "body_weight", "start"};
+
 }  // namespace
 
-Result<void> apply_settings(const toml::table& table, const std::string& where, RunSettings& run) {
+Result<void> check_settings(const GivenSettings& given, const RunSettings& run) {
+  const bool is_recorded = run.is_recorded();
+  for (const auto& [key, where] : given) {
+    if (is_recorded && std::ranges::count(kOfSequences, key) > 0) {
+      return error("{}: not together with clip: it is of rendered sequences", where);
+    }
+    if (!is_recorded && std::ranges::count(kOfClips, key) > 0) return error("{}: needs clip, a list of videos", where);
+  }
+  if (!is_recorded) return {};
+  const std::string& where = given.at("clip");
+  const auto is_one_a_video = [&](const std::vector<std::string>& values) {
+    return values.empty() || values.size() == run.clip.size();
+  };
+  if (run.camera.empty()) return error("{}: needs camera, a calibration file", where);
+  if (run.truth.empty()) return error("{}: needs truth, a folder", where);
+  if (!is_one_a_video(run.camera_names)) {
+    return error("{}: {} camera_names for {} videos", where, run.camera_names.size(), run.clip.size());
+  }
+  if (!is_one_a_video(run.background)) {
+    return error("{}: {} backgrounds for {} videos", where, run.background.size(), run.clip.size());
+  }
+  if (run.evidence == "network" && run.clip.size() > 1) {
+    return error("{}: evidence = \"network\" is of one video: each camera has keypoints of its own", where);
+  }
+  if (run.segmenter != "learned" && (run.evidence == "landmarks" || run.evidence == "network")) {
+    return error("{}: evidence = \"{}\" needs segmenter = \"learned\"", where, run.evidence);
+  }
+  return {};
+}
+
+Result<void> apply_settings(const toml::table& table, const std::string& where, RunSettings& run,
+                            GivenSettings* given) {
   for (const auto& [key, node] : table) {
     const TomlEntry entry{node, fmt::format("{}.{}", where, key.str())};
     const auto setter = setters().find(key.str());
     if (setter == setters().end()) return error("{}: no such setting", entry.where);
     const Result<void> set = setter->second(entry, run);
     if (!set) return set.failure();
+    if (given != nullptr) given->insert_or_assign(std::string(key.str()), entry.where);
   }
   return {};
 }

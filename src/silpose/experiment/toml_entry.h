@@ -6,7 +6,9 @@
 #include <toml++/toml.h>
 
 #include <array>
+#include <functional>
 #include <initializer_list>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,8 +40,17 @@ Result<void> take(const Result<T>& read, U& into) {
   return {};
 }
 
-// Changes the settings that a table names. `where` begins the name of each in errors.
+// Settings that were given, and where: "motion" to "grid.toml: run.motion".
+using GivenSettings = std::map<std::string, std::string, std::less<>>;
+
+// Changes the settings that a table names, and notes them in `given`. `where` begins the name of each in errors.
 // Errors: a key that is no setting; a value that it cannot have.
-Result<void> apply_settings(const toml::table& table, const std::string& where, RunSettings& run);
+Result<void> apply_settings(const toml::table& table, const std::string& where, RunSettings& run,
+                            GivenSettings* given = nullptr);
+
+// Whether a cell's settings belong together: those of recorded clips, or those of rendered sequences.
+// Errors: a key that needs a clip, or that does not go with one; a clip without camera or truth, with another number of
+// names than videos, or with evidence that its segmenter does not give.
+Result<void> check_settings(const GivenSettings& given, const RunSettings& run);
 
 }  // namespace silpose

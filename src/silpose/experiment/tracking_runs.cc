@@ -6,6 +6,8 @@
 
 #include "silpose/base/clock.h"
 #include "silpose/base/parallel.h"
+#include "silpose/experiment/recorded_clip.h"
+#include "silpose/experiment/score_clip.h"
 #include "silpose/experiment/score_run.h"
 #include "silpose/synth/degraded_mask.h"
 
@@ -20,6 +22,13 @@ Result<void> choose_tracker(const RunSettings& settings, TrackerOptions& options
   options.lod_vertices = settings.vertices;
   options.num_hypotheses = settings.hypotheses;
   options.smooth = settings.smooth;
+  options.floor = settings.floor;
+  if (settings.is_recorded()) {
+    options.evidence = settings.evidence == "silhouette"  ? EvidenceKind::kSilhouette
+                       : settings.evidence == "landmarks" ? EvidenceKind::kKeypoints
+                                                          : EvidenceKind::kBoth;
+    options.landmarks = settings.segmenter == "learned";  // as `silpose track` starts
+  }
   try {
     options.check();
   } catch (const std::invalid_argument& wrong) {
@@ -137,6 +146,30 @@ ByteImage confidence_of_faults(const Mask& mask, const Mask& truth) {
   return confidence;
 }
 
+// Tracks the instants; nothing when `go_on` says false. Scores of the tracker's times are added to those that `score`
+// makes of its reports.
+Result<std::optional<RunResult>> track_and_score(
+    const TrackerOptions& options, std::span<const ClipInstant> instants, const std::function<bool()>& go_on,
+    const std::function<Result<RunResult>(std::span<const StepReport>)>& score) {
+  bool stopped = false;
+  const Stopwatch tracking;
+  const std::vector<StepReport> reports = track_clip(options, instants, [&](size_t, size_t) {
+    stopped = stopped || !go_on();
+    return !stopped;
+  });
+  const double tracking_s = tracking.seconds();
+  if (stopped) return std::optional<RunResult>();
+  Result<RunResult> result = score(reports);
+  if (!result) return result.failure();
+  double start_s = 0;
+  for (const StepReport& report : reports) start_s += report.seconds.start;
+  const auto num_frames = static_cast<double>(reports.size());
+  result->scores["frames_per_second"] = num_frames / std::max(tracking_s - start_s, 1e-9);
+  result->scores["frames_per_second_with_start"] = num_frames / std::max(tracking_s, 1e-9);
+  result->scores["start_s"] = start_s;
+  return std::optional<RunResult>(std::move(*result));
+}
+
 double mean_overlap(const SyntheticSequence& sequence, const std::vector<ClipInstant>& instants) {
   std::vector<double> overlap(instants.size());
   parallel_for(instants.size(), 1, [&](size_t begin, size_t end) {
@@ -208,6 +241,7 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
 
 Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, uint64_t seed,
                                                    const std::function<bool()>& go_on) {
+  if (settings.is_recorded()) return run_on_clip(settings, seed, go_on);
   const Stopwatch all;
   const auto seen = see(settings, seed);
   if (!seen) return seen.failure();
@@ -223,27 +257,60 @@ Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, 
   const Result<void> chosen = choose_tracker(settings, options);
   if (!chosen) return chosen.failure();
   if (!go_on()) return std::optional<RunResult>();
-  bool stopped = false;
-  const Stopwatch tracking;
-  const std::vector<StepReport> reports = track_clip(options, (*seen)->instants, [&](size_t, size_t) {
-    stopped = stopped || !go_on();
-    return !stopped;
+  auto result = track_and_score(options, (*seen)->instants, go_on, [&](std::span<const StepReport> reports) {
+    return score_run(sequence, **tracker_body, reports);
   });
-  const double tracking_s = tracking.seconds();
-  if (stopped) return std::optional<RunResult>();
+  if (!result || !result->has_value()) return result;
+  RunResult& run = **result;
+  run.scores["mask_iou"] = (*seen)->mask_iou;
+  if ((*seen)->residual_deg) run.scores["retargeting_residual_deg"] = *(*seen)->residual_deg;
+  run.wall_s = all.seconds();
+  return result;
+}
 
-  Result<RunResult> result = score_run(sequence, **tracker_body, reports);
-  if (!result) return result.failure();
-  double start_s = 0;
-  for (const StepReport& report : reports) start_s += report.seconds.start;
-  const auto num_frames = static_cast<double>(reports.size());
-  result->scores["frames_per_second"] = num_frames / std::max(tracking_s - start_s, 1e-9);
-  result->scores["frames_per_second_with_start"] = num_frames / std::max(tracking_s, 1e-9);
-  result->scores["start_s"] = start_s;
-  result->scores["mask_iou"] = (*seen)->mask_iou;
-  if ((*seen)->residual_deg) result->scores["retargeting_residual_deg"] = *(*seen)->residual_deg;
-  result->wall_s = all.seconds();
-  return std::optional<RunResult>(std::move(*result));
+Result<std::optional<RunResult>> TrackingRuns::run_on_clip(const RunSettings& settings, uint64_t seed,
+                                                           const std::function<bool()>& go_on) {
+  const Stopwatch all;
+  const auto tracker_body = body(settings.model);
+  if (!tracker_body) return tracker_body.failure();
+  Result<std::vector<PinholeCamera>> cameras = read_clip_cameras(settings, data_);
+  if (!cameras) return cameras.failure();
+  const Result<ClipTruth> truth = read_clip_truth(settings, data_, **tracker_body);
+  if (!truth) return truth.failure();
+
+  ClipInput input{.videos = {}, .segmenter = settings.segmenter, .backgrounds = {}, .num_frames = settings.frames};
+  for (const std::string& video : settings.clip) input.videos.push_back((data_ / video).string());
+  for (const std::string& background : settings.background) {
+    input.backgrounds.push_back(background == "auto" ? background : (data_ / background).string());
+  }
+  const auto instants = clips_.read(input, go_on);
+  if (!instants) return instants.failure();
+  if (!instants->has_value()) return std::optional<RunResult>();
+  for (size_t c = 0; c < cameras->size(); ++c) {
+    const PinholeCamera& camera = (*cameras)[c];
+    const Mask& mask = (**instants)[0].observations[c].mask;
+    if (mask.width() == camera.width && mask.height() == camera.height) continue;
+    return error("{}: camera {} is calibrated for {}x{}, the video is {}x{}", settings.camera, camera.name,
+                 camera.width, camera.height, mask.width(), mask.height());
+  }
+
+  if (settings.evidence == "network") {
+    Result<RunResult> scored = score_keypoints(*truth, **tracker_body, (*cameras)[0], **instants);
+    if (!scored) return scored.failure();
+    scored->wall_s = all.seconds();
+    return std::optional<RunResult>(std::move(*scored));
+  }
+  TrackerOptions options;
+  options.body = *tracker_body;
+  options.cameras = *cameras;
+  options.seed = seed;
+  const Result<void> chosen = choose_tracker(settings, options);
+  if (!chosen) return chosen.failure();
+  auto result = track_and_score(options, **instants, go_on, [&](std::span<const StepReport> reports) {
+    return score_clip(*truth, **tracker_body, *cameras, reports);
+  });
+  if (result && result->has_value()) (*result)->wall_s = all.seconds();
+  return result;
 }
 
 }  // namespace silpose

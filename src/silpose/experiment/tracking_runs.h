@@ -1,6 +1,6 @@
-// TrackingRuns: runs of an experiment, each from its settings to its scores: makes the sequence and its masks, tracks
-// it in process, and scores the result. Threads: one thread; a run itself uses all cores and, times apart, gives the
-// same result on any number.
+// TrackingRuns: runs of an experiment, each from its settings to its scores: makes the sequence and its masks, or
+// segments the recorded clip; tracks it in process, and scores the result. Threads: one thread; a run itself uses all
+// cores and, times apart, gives the same result on any number.
 #pragma once
 
 #include <cstdint>
@@ -14,6 +14,7 @@
 
 #include "silpose/base/result.h"
 #include "silpose/body/body_model.h"
+#include "silpose/experiment/clip_reader.h"
 #include "silpose/experiment/run_result.h"
 #include "silpose/experiment/run_settings.h"
 #include "silpose/synth/scene.h"
@@ -26,13 +27,18 @@ using BodySource = std::function<Result<std::shared_ptr<const BodyModel>>(const 
 
 class TrackingRuns {
  public:
-  // `data`: the folder of motion-capture files; empty where none was given.
-  TrackingRuns(BodySource bodies, std::filesystem::path data) : bodies_(std::move(bodies)), data_(std::move(data)) {}
+  // `data`: the folder of motion-capture files and recorded clips; empty where none was given. `networks`: that of the
+  // segmenter's networks.
+  TrackingRuns(BodySource bodies, std::filesystem::path data, const std::filesystem::path& networks = {})
+      : bodies_(std::move(bodies)), data_(std::move(data)), clips_(networks.string()) {}
 
   // The seed is that of the motion, the masks' noise and the tracker. `go_on` is asked after each frame; when it says
   // false there is no result. Scores: those of score_run(), frames_per_second (the tracker alone), start_s, mask_iou
-  // (of the masks given to the tracker, first camera) and, of motion capture, retargeting_residual_deg.
-  // Errors: a body, motion, view or option that is not there; the motion does not fit into the picture.
+  // (of the masks given to the tracker, first camera) and, of motion capture, retargeting_residual_deg. Of a recorded
+  // clip: those of score_clip() or, of evidence `network`, score_keypoints(); and the tracker's times. The body's
+  // height counts as known, and the body is not fitted. Errors: a body, motion, view or option that is not there; the
+  // motion does not fit into the picture. Of a clip: those of read_clip_cameras(), read_clip_truth() and
+  // ClipReader::read(); videos of another size than their cameras.
   Result<std::optional<RunResult>> run(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
 
  private:
@@ -44,6 +50,8 @@ class TrackingRuns {
     std::optional<double> residual_deg;
     double mask_iou = 1;
   };
+  Result<std::optional<RunResult>> run_on_clip(const RunSettings& settings, uint64_t seed,
+                                               const std::function<bool()>& go_on);
   Result<const Seen*> see(const RunSettings& settings, uint64_t seed);
   Result<std::shared_ptr<const BodyModel>> body(const std::string& model);
 
@@ -51,6 +59,7 @@ class TrackingRuns {
   std::filesystem::path data_;
   std::map<std::string, std::shared_ptr<const BodyModel>> kept_bodies_;
   std::optional<Seen> seen_;
+  ClipReader clips_;
 };
 
 }  // namespace silpose
