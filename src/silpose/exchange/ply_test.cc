@@ -48,7 +48,8 @@ TEST(ReadPlyVertices, SaysWhatIsWrong) {
   const auto told = [&](const std::string& from, const std::string& to) {
     std::string header = kHeader;
     header.replace(header.find(from), from.size(), to);
-    return read(header + rows).error().message;
+    const auto vertices = read(header + rows);
+    return vertices.error().message;
   };
   EXPECT_THAT(read("solid cube\n").error().message, HasSubstr("no PLY file"));
   EXPECT_THAT(read(kHeader + row(1, 2, 3)).error().message, HasSubstr("ends before its 2 vertices"));
