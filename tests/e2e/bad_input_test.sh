@@ -156,7 +156,6 @@ expect_failure 1 'empty.csv' "${masks[@]}" --init empty.csv
 expect_failure 1 'init landmarks: masks finds none' "${masks[@]}" --init landmarks
 expect_failure 1 'evidence landmarks: masks finds none' "${masks[@]}" --evidence landmarks
 expect_failure 1 'regenerate-from network: masks finds no keypoints' "${masks[@]}" --preset thesis --regenerate-from network
-expect_failure 2 'regenerate-from: needs --particles' "${masks[@]}" --regenerate-from network
 expect_failure 1 'absent.csv' render --pose absent.csv --out picture.png
 expect_failure '1|2' 'poses.csv:99' render --pose truth/poses.csv:99 --out picture.png
 expect_failure 1 'folder' evaluate --result folder --truth truth
