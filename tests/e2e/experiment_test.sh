@@ -2,7 +2,7 @@
 source "$(dirname "$0")/checks.sh"
 
 "$silpose" experiment --list >list.txt
-for name in human-synthetic human-motion human-start human-robust human-faults human-cameras human-cost; do
+for name in human-synthetic human-motion human-start human-robust human-faults human-cameras human-cost real; do
   grep -q "^$name " list.txt || fail "--list does not tell $name: $(cat list.txt)"
 done
 
@@ -62,6 +62,37 @@ cp -r out.partial kept.partial
 "$silpose" experiment stopped.toml --out kept --resume --quiet >/dev/null || fail "--resume: exit $?"
 [[ $(stat -c %Y.%i "out.partial/stopped/runs/$first") == "$before" ]] || fail "the finished run was touched"
 cmp -s kept/stopped/frames.csv whole/sweeps/frames.csv || fail "resumed to other frames"
+
+# A clip rendered here, in the layout of recorded ones.
+mkdir clips
+"$silpose" synth --motion sway --frames 4 --size 160x120 --out clips/sway --quiet >/dev/null || fail "synth: exit $?"
+cat >recorded.toml <<'TOML'
+title = "One clip"
+seeds = 2
+[run]
+clip = ["sway/masks"]
+camera = "sway/camera.toml"
+truth = "sway"
+segmenter = "masks"
+[[axis]]
+name = "evidence"
+key = "evidence"
+values = ["silhouette", "both"]
+[[table]]
+name = "errors"
+rows = ["evidence"]
+figures = ["joint_error_root_mm", "knee_error_deg", "coverage_knee", "risk_40_mm", "observed_iou"]
+TOML
+"$silpose" experiment recorded.toml --data clips --out recorded --quiet >text.txt 2>err.txt || fail "exit $?: $(cat err.txt)"
+expect_at_most "$(number recorded/recorded/results.json figures both/joint_error_root_mm mean)" 150 "error of a clip, mm"
+for score in worst_frame_mm ece_joint rank_correlation coverage_joint visual_accuracy frames_per_second; do
+  grep -q "\"silhouette/$score\"" recorded/recorded/results.json || fail "no $score"
+done
+expect_failure 1 'recorded: needs recorded clips .*--data' experiment recorded.toml --out x
+expect_failure 1 'nowhere/sway/masks: no such file' experiment recorded.toml --out x --data nowhere
+sed 's/^segmenter/motion = "sway"\nsegmenter/' recorded.toml >mixed.toml
+expect_failure 1 'mixed.toml: run.motion: not together with clip' experiment mixed.toml --out x --data clips
+expect_failure 1 'real: needs recorded clips .*--data' experiment real --out x
 
 expect_failure 1 'no-such: no such experiment \(.*human-motion' experiment no-such --out x
 expect_failure 1 'human-motion: needs motion-capture files .*--data' experiment human-motion --out x
