@@ -4,7 +4,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "silpose/base/parallel.h"
@@ -119,7 +118,7 @@ std::vector<SkinPoint> outermost_points(const BodyModel& body) {
   return points;
 }
 
-std::vector<std::optional<FleshPart>> flesh_parts(const BodyModel& body) {
+std::vector<std::optional<Eigen::Vector3d>> flesh_centres(const BodyModel& body) {
   const std::vector<Eigen::Vector3f>& vertices = body.rest.vertices;
   Eigen::Vector3f lowest = vertices.front(), highest = vertices.front();
   for (const Eigen::Vector3f& x : vertices) lowest = lowest.cwiseMin(x), highest = highest.cwiseMax(x);
@@ -168,12 +167,11 @@ std::vector<std::optional<FleshPart>> flesh_parts(const BodyModel& body) {
       }
     }
   }
-  const double whole = std::accumulate(mass.begin(), mass.end(), 0.0);
-  std::vector<std::optional<FleshPart>> parts(J);
+  std::vector<std::optional<Eigen::Vector3d>> centres(J);
   for (size_t j = 0; j < J; ++j) {
-    if (mass[j] > 0) parts[j] = {body.joint_from_rest[j] * (moment[j] / mass[j]), mass[j] / whole};
+    if (mass[j] > 0) centres[j] = body.joint_from_rest[j] * (moment[j] / mass[j]);
   }
-  return parts;
+  return centres;
 }
 
 }  // namespace silpose

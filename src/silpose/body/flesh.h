@@ -21,14 +21,9 @@ struct FleshSphere {
 // Ordered by joint, then by size; a few a bone. Bones without vertices have none.
 [[nodiscard]] std::vector<FleshSphere> flesh_spheres(const BodyModel& body);
 
-// A bone's flesh.
-struct FleshPart {
-  Eigen::Vector3d centre_in_joint;  // of its volume, in the rest pose
-  double share = 0;                 // of the whole body's volume
-};
-// [J] Nothing where a bone has none. From columns of the closed mesh, each halved between the bones it enters and
-// leaves at.
-[[nodiscard]] std::vector<std::optional<FleshPart>> flesh_parts(const BodyModel& body);
+// [J] The middle of each bone's flesh (of the volume, in the rest pose), in its joint's frame; nothing where a bone has
+// none. From columns of the closed mesh, each halved between the bones it enters and leaves at.
+[[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> flesh_centres(const BodyModel& body);
 
 struct SkinPoint {
   int joint_idx = 0;

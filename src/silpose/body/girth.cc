@@ -26,16 +26,15 @@ Vector3d along_bone(const Skeleton& skeleton, size_t joint_idx, const Vector3d& 
 }  // namespace
 
 Girths::Girths(BodyModel body) : body_(std::move(body)), volume_(volume(body_.rest)) {
-  const auto parts = flesh_parts(body_);
-  bones_.resize(parts.size());
-  for (size_t j = 0; j < parts.size(); ++j) {
-    if (!parts[j]) continue;
-    const Vector3d& centre = parts[j]->centre_in_joint;
+  const auto centres = flesh_centres(body_);
+  bones_.resize(centres.size());
+  for (size_t j = 0; j < centres.size(); ++j) {
+    if (!centres[j]) continue;
     const Rigid3 rest_from_joint = body_.joint_from_rest[j].inverse();
     const std::string name(without_side(body_.skeleton.joints()[j].name));
     const auto group = std::ranges::find(names_, name) - names_.begin();
     if (group == std::ssize(names_)) names_.push_back(name);
-    bones_[j] = {rest_from_joint * centre, rest_from_joint.rotation * along_bone(body_.skeleton, j, centre),
+    bones_[j] = {rest_from_joint * *centres[j], rest_from_joint.rotation * along_bone(body_.skeleton, j, *centres[j]),
                  static_cast<int>(group)};
   }
 }

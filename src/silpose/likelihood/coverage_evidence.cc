@@ -59,12 +59,7 @@ CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observ
     evidence.noise.push_back(0);
     if (observation.trust.nothing_found || observation.box.empty()) continue;
     view.trust = observation.trust.overall;
-    if (kind != EvidenceKind::kSilhouette) {
-      // By themselves keypoints must tell where the body is, too.
-      const KeypointWeights weights{.places = kind == EvidenceKind::kKeypoints ? 1 : KeypointWeights{}.places};
-      auto term = std::make_shared<const KeypointTerm>(body(), camera, observation, weights);
-      if (term->tells_pose()) view.keypoints = std::move(term);
-    }
+    view.keypoints = make_keypoint_term(body(), camera, observation, kind);
     const double extent = std::max(observation.box.height, observation.box.width);
     view.pixel_unit = std::max(extent / CoverageEvidence::kSubjectHeight, 0.25);
     view.outline_length = outline_length(observation.mask);

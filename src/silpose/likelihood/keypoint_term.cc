@@ -13,12 +13,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFreedom = 4;  // degrees of Student's t
-// Of the body's height in the image: networks and rigs do not mean quite the same by a joint.
+constexpr double kFreedom = 4;  // [guess] degrees of Student's t
+// Of the body's height in the image: networks and rigs do not mean quite the same by a joint. [guess]
 constexpr double kPlaceDeviation = 0.03;
-constexpr double kLeastVisible = 0.5;
-constexpr double kBehind = 50;        // squared deviations of what is behind the camera
-constexpr double kShortest_m = 0.05;  // a segment that the network takes for shorter has no direction
+constexpr double kLeastVisible = 0.5;  // [guess]
+constexpr double kBehind = 1e4;  // squared deviations of what is behind the camera: more than anything in the image
+constexpr double kShortest_m = 0.05;  // [guess] a segment that the network takes for shorter has no direction
 
 // A segment from the mean of some keypoints to the mean of others, without side; what its unit vector may be off in the
 // image and in depth, and how much of it lies too far forward, in the subject's own frame.
@@ -57,7 +57,7 @@ KeypointTerm::KeypointTerm(const BodyModel& body, const PinholeCamera& camera, c
   // An upright body covers about a tenth of its height squared, in most poses.
   const double height_px = std::sqrt(10 * static_cast<double>(observation.mask.count()));
   deviation_px_ = std::max(1.0, kPlaceDeviation * height_px);
-  if (weights.places > 0) add_places(body, observation, weights.places);
+  add_places(body, observation, weights.places);
   if (weights.directions > 0 && !observation.keypoints.empty()) {
     add_directions(body, observation.keypoints, weights.directions);
   }
@@ -83,9 +83,10 @@ void KeypointTerm::add_places(const BodyModel& body, const Observation& observat
   for (const SeenLandmark& seen : observation.landmarks) {
     if (!(seen.visibility >= kLeastVisible)) continue;
     if (!(seen.x >= 0 && seen.x < camera_.width && seen.y >= 0 && seen.y < camera_.height)) continue;
-    if (const auto point = point_of(body, seen.name)) {
-      places_.push_back({*point, {seen.x, seen.y}, weight * seen.visibility});
-    }
+    const auto point = point_of(body, seen.name);
+    if (!point) continue;
+    ++num_seen_;
+    if (weight > 0) places_.push_back({*point, {seen.x, seen.y}, weight * seen.visibility});
   }
 }
 
@@ -109,7 +110,7 @@ void KeypointTerm::add_directions(const BodyModel& body, const Keypoints3D& keyp
         direction.ends.push_back({*point, factor});
       }
     }
-    if (!(vector.norm() >= kShortest_m)) return;
+    if (!vector.allFinite() || !(vector.norm() >= kShortest_m) || !(visibility > 0)) return;
     direction.observed = (vector.normalized() - bias).normalized();
     direction.inverse_deviation = {1 / in_image, 1 / in_image, 1 / in_depth};
     direction.weight = weight * visibility;
@@ -213,6 +214,16 @@ double KeypointTerm::add(const Skeleton& skeleton, std::span<const double> pose,
   lower.selfadjointView<Eigen::Lower>().rankUpdate(jacobian.leftCols(row), trust);
   hessian += lower.selfadjointView<Eigen::Lower>();
   return trust * sum;
+}
+
+std::shared_ptr<const KeypointTerm> make_keypoint_term(const BodyModel& body, const PinholeCamera& camera,
+                                                       const Observation& observation, EvidenceKind kind, bool places) {
+  if (kind == EvidenceKind::kSilhouette) return nullptr;
+  KeypointWeights weights;
+  if (kind == EvidenceKind::kKeypoints) weights.places = 1;
+  if (!places) weights.places = 0;
+  auto term = std::make_shared<const KeypointTerm>(body, camera, observation, weights);
+  return term->tells_pose() ? term : nullptr;
 }
 
 }  // namespace silpose

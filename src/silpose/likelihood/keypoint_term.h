@@ -8,6 +8,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -41,7 +42,7 @@ class KeypointTerm {
   [[nodiscard]] size_t num_directions() const { return directions_.size(); }
   [[nodiscard]] bool empty() const { return places_.empty() && directions_.empty(); }
   // Too few of them tell nothing of the whole body.
-  [[nodiscard]] bool tells_pose() const { return places_.size() >= 6; }
+  [[nodiscard]] bool tells_pose() const { return num_seen_ >= 6; }
 
   // -2 log-likelihood of a pose [D], up to a constant. `skeleton` has the joints of the body, and perhaps more DOF.
   [[nodiscard]] double cost(const Skeleton& skeleton, std::span<const double> pose) const;
@@ -75,6 +76,7 @@ class KeypointTerm {
   void add_places(const BodyModel& body, const Observation& observation, double weight);
   void add_directions(const BodyModel& body, const Keypoints3D& keypoints, double weight);
 
+  size_t num_seen_ = 0;  // in the image, of those that the body has
   PinholeCamera camera_;
   std::vector<Point> points_;
   std::vector<Place> places_;
@@ -82,5 +84,12 @@ class KeypointTerm {
   Eigen::Matrix3d ray_from_world_ = Eigen::Matrix3d::Identity();  // z: the ray at which the network looked
   double deviation_px_ = 1;
 };
+
+// What an observation's keypoints say where they count: null for kSilhouette, and where too few are seen to tell a
+// pose. By themselves they must tell where the body is, too, and places weigh fully. Without `places` only directions
+// count.
+std::shared_ptr<const KeypointTerm> make_keypoint_term(const BodyModel& body, const PinholeCamera& camera,
+                                                       const Observation& observation, EvidenceKind kind,
+                                                       bool places = true);
 
 }  // namespace silpose

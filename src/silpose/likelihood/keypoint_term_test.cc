@@ -6,6 +6,7 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/body/human.h"
+#include "silpose/likelihood/coverage_likelihood.h"
 
 namespace silpose {
 namespace {
@@ -154,6 +155,53 @@ TEST_F(KeypointTermTest, AWildKeypointCostsLittleMoreThanABadOne) {
   const double wild = KeypointTerm(*body_, camera_, seen).cost(body_->skeleton, truth);
   EXPECT_GT(bad, good + 2);
   EXPECT_LT(wild, good + 3 * (bad - good));
+}
+
+// The energy of both kinds of evidence is the sum of each by itself, and has the derivative of the sum; a camera
+// without keypoints has silhouettes alone.
+TEST_F(KeypointTermTest, BothKindsOfEvidenceAddUp) {
+  const auto body = std::make_shared<const BodyModel>(level_of_detail(*body_, 1000));
+  const std::vector<PinholeCamera> cameras = {camera_, camera_};
+  const CoverageLikelihood likelihood(body, cameras);
+  CoverageLikelihood::Scratch scratch(likelihood);
+  std::vector<double> truth = standing(0.3), pose = truth;
+  for (size_t d = 3; d < pose.size(); ++d) pose[d] += 0.05;
+  Observation with = see(truth);
+  add_keypoints(truth, with);
+  Observation without = with;
+  without.landmarks.clear();
+  without.keypoints = {};
+  const std::vector<Observation> seen = {with, without};
+  const auto prepare = [&](EvidenceKind kind) { return likelihood.prepare(seen, Blur::k4, Blur::k4, kind); };
+  const auto silhouettes = prepare(EvidenceKind::kSilhouette), keypoints = prepare(EvidenceKind::kKeypoints),
+             both = prepare(EvidenceKind::kBoth);
+  EXPECT_FALSE(silhouettes.has_directions());
+  EXPECT_TRUE(both.has_directions());
+  EXPECT_EQ(both.views[1].keypoints, nullptr);
+  const double of_silhouettes = likelihood.energy(silhouettes, Blur::k4, pose, scratch),
+               of_keypoints = KeypointTerm(*body_, camera_, with).cost(body->skeleton, pose),
+               of_both = likelihood.energy(both, Blur::k4, pose, scratch);
+  EXPECT_NEAR(of_both, of_silhouettes + of_keypoints, 1e-6 * of_both);
+  // By themselves places weigh more.
+  EXPECT_GT(likelihood.energy(keypoints, Blur::k4, pose, scratch), of_keypoints);
+  const NormalEquations equations = likelihood.linearise(both, Blur::k4, pose, scratch);
+  EXPECT_NEAR(equations.energy, of_both, 1e-6 * of_both);
+  const NormalEquations outline = likelihood.linearise(silhouettes, Blur::k4, pose, scratch);
+  Eigen::VectorXd gradient = outline.gradient;
+  Eigen::MatrixXd hessian = outline.hessian;
+  KeypointTerm(*body_, camera_, with).add(body->skeleton, pose, 1, gradient, hessian);
+  EXPECT_LT((equations.gradient - gradient).norm(), 1e-9 * gradient.norm());
+  EXPECT_LT((equations.hessian - hessian).norm(), 1e-9 * hessian.norm());
+}
+
+TEST_F(KeypointTermTest, PointsBehindTheCameraCostMoreThanAnyInTheImage) {
+  const std::vector<double> truth = standing(0);
+  Observation seen = see(truth);
+  const KeypointTerm term(*body_, camera_, seen, {.directions = 0, .places = 1});
+  std::vector<double> behind = truth, corner = truth;
+  behind[2] += 20;
+  corner[0] += 3;
+  EXPECT_GT(term.cost(body_->skeleton, behind), term.cost(body_->skeleton, corner));
 }
 
 }  // namespace

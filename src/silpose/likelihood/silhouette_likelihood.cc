@@ -77,12 +77,10 @@ Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations
         view.area = view.observed.count();
       }
       view.trust = view.area > 0 ? observation.trust.overall : 0;
-      if (options_.evidence != EvidenceKind::kSilhouette && view.trust > 0) {
-        // What is cropped says nothing of where the body is, nor do places in the image of a pose that is elsewhere.
-        const double places = options_.comparison == Comparison::kCropped ? 0 : KeypointWeights{}.places;
-        auto term =
-            std::make_shared<const KeypointTerm>(body(), camera, observation, KeypointWeights{.places = places});
-        if (!term->empty()) view.keypoints = std::move(term);
+      // What is cropped says nothing of where the body is, nor do places in the image of a pose that is elsewhere.
+      if (view.trust > 0) {
+        view.keypoints = make_keypoint_term(body(), camera, observation, options_.evidence,
+                                            options_.comparison == Comparison::kImage);
       }
     }
     evidence.views.push_back(std::move(view));

@@ -13,8 +13,8 @@ namespace {
 
 // Outline noise (in units of pixel_unit^3) up to which the body counts as right, and from which on as any other's.
 constexpr double kRightBody = 2, kAnyBody = 20;
-// How much of one frame's information is left of all frames, where errors are the same in all of them: a silhouette
-// misses what the body is built like, a network has a bias of its own for each person and view.
+// All frames together are worth this fraction of one frame's information where errors are the same in all of them: the
+// subject is not built as the body is, and a network has a bias of its own for each person and view.
 // [measured: so that nine in ten joints and knees of the experiment `real` lie within the claimed 90 %]
 constexpr double kSilhouetteWorth = 0.05, kKeypointWorth = 0.35;
 

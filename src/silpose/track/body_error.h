@@ -3,8 +3,9 @@
 // all frames are off alike, so that neither time nor a good overlap makes it smaller. How wrong the body is shows in
 // how badly its outline fits: with outlines as clean as exact masks of the right body leave them nothing is added.
 // But one camera sees a larger body further away as it sees a smaller one nearby: how well the size is known has to be
-// told, and is added whatever the outline. So is it with the errors of masks and networks: they change little from
-// frame to frame, and a filter that takes them for independent claims too much.
+// told, and is added whatever the outline. Masks and networks, too, have errors that change little from frame to frame,
+// and a filter that takes them for independent claims too much: what a single frame leaves open is added, as far as the
+// outline shows that neither body nor masks are exact.
 // Based on: consider covariance of parameters that are not estimated (references.bib: schmidt1966).
 // Threads: constant after construction; one CoverageLikelihood::Scratch of likelihood() per thread.
 #pragma once

@@ -10,14 +10,16 @@
 namespace silpose {
 namespace {
 
-// [guess] How often a network begins to exchange the sides and ends, per second, and how likely it does at first.
+// [guess] Rates at which exchanges begin and end, and their probability in the first frame.
 constexpr double kBegins_per_s = 1, kEnds_per_s = 2, kAtFirst = 0.03;
 // [guess] How far a frame's line is off by the network's own noise (where it was seen, exchanged lines were up to 0.5
 // off the mirror image), and how fast a body pivots: what is believed follows no faster.
 constexpr double kNoise_rad = 0.45, kFastest_rad_per_s = 5;
-constexpr double kOutlier = 0.01;        // of the likelihood: what tells nothing
-constexpr double kLongestGap_s = 0.5;    // after which the body may face anywhere
-constexpr double kLeastExchanged_s = 1;  // before which what came first is not doubted
+constexpr double kIndependent_s = 1.0 / 30;  // frames that follow sooner say partly the same
+constexpr double kOutlier = 0.01;            // of the likelihood: what tells nothing
+constexpr double kLongestGap_s = 0.5;        // after which the body may face anywhere
+constexpr double kLeastExchanged_s = 1,
+                 kMemory_s = 3;  // [guess] before which what came first is not doubted; how far back durations count
 
 Eigen::Vector3d mirrored(const Eigen::Vector3d& line) { return {-line.x(), -line.y(), line.z()}; }
 
@@ -39,7 +41,7 @@ std::optional<Eigen::Vector3d> line_across(const Keypoints3D& keypoints) {
     if (!a || !b) return std::nullopt;
     for (int i = 0; i < 3; ++i) line[i] += b->x[static_cast<size_t>(i)] - a->x[static_cast<size_t>(i)];
   }
-  if (!(line.norm() > 0)) return std::nullopt;
+  if (!line.allFinite() || !(line.norm() > 0)) return std::nullopt;
   return line.normalized();
 }
 
@@ -56,15 +58,17 @@ double KeypointSides::step(const Keypoints3D& keypoints, double dt_s) {
   }
   const double begins = 1 - std::exp(-kBegins_per_s * passed_s), ends = 1 - std::exp(-kEnds_per_s * passed_s);
   const double before = exchanged_ * (1 - ends) + (1 - exchanged_) * begins;
-  const double if_as_is = (1 - before) * likelihood(*now, *line_),
-               if_exchanged = before * likelihood(*now, mirrored(*line_));
+  const double worth = std::min(1.0, passed_s / kIndependent_s);
+  const double if_as_is = (1 - before) * std::pow(likelihood(*now, *line_), worth),
+               if_exchanged = before * std::pow(likelihood(*now, mirrored(*line_)), worth);
   exchanged_ = if_exchanged / (if_as_is + if_exchanged);
   const Eigen::Vector3d true_line = (1 - exchanged_) * *now + exchanged_ * mirrored(*now);
   const double off = angle_between(*line_, true_line);
   const double share = std::min(1.0, kFastest_rad_per_s * passed_s / std::max(off, 1e-9));
   *line_ = ((1 - share) * *line_ + share * true_line.stableNormalized()).stableNormalized();
-  (exchanged_ > kExchanged ? exchanged_s_ : as_is_s_) += passed_s;
-  if (exchanged_s_ > std::max(kLeastExchanged_s, as_is_s_)) {  // it was the beginning that was exchanged
+  double& held_s = exchanged_ > kExchanged ? exchanged_s_ : as_is_s_;
+  held_s = std::min(held_s + passed_s, kMemory_s);
+  if (exchanged_s_ >= std::clamp(as_is_s_, kLeastExchanged_s, kMemory_s)) {  // it was the beginning that was exchanged
     *line_ = mirrored(*line_);
     exchanged_ = 1 - exchanged_;
     std::swap(as_is_s_, exchanged_s_);
@@ -92,13 +96,13 @@ std::vector<double> exchanged_sides(std::span<const Keypoints3D* const> keypoint
   for (size_t t = 0; t < keypoints.size(); ++t) {
     if (!line_across(*keypoints[t])) continue;
     if (any && static_cast<double>(times_ns[t] - times_ns[last_seen]) * 1e-9 > kLongestGap_s) {
-      judge(first, t);
+      judge(first, last_seen + 1);
       first = t;
     }
     any = true;
     last_seen = t;
   }
-  if (any) judge(first, keypoints.size());
+  if (any) judge(first, last_seen + 1);
   return exchanged;
 }
 

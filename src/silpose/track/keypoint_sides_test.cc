@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "silpose/base/rng.h"
@@ -65,6 +66,41 @@ TEST(KeypointSides, LeavesWhoeverTurnsAlone) {
     EXPECT_LT(judged.online[t], kExchanged) << t;
     EXPECT_LT(judged.clip[t], kExchanged) << t;
   }
+}
+
+// Frames without anybody in the middle and at the end: each stretch is judged by itself, from both its ends.
+TEST(KeypointSides, JudgesEachStretchByItself) {
+  std::vector<Keypoints3D> frames;
+  for (int t = 0; t < 60; ++t) frames.push_back(facing(0.4, t >= 40 && t < 50));
+  for (int t = 0; t < 30; ++t) frames.emplace_back();
+  for (int t = 0; t < 60; ++t) frames.push_back(facing(-0.4, t >= 45));
+  for (int t = 0; t < 30; ++t) frames.emplace_back();
+  const Judged judged = judge(frames);
+  for (size_t t = 0; t < frames.size(); ++t) {
+    if (t == 49) continue;  // seen from the end it is the first of its kind, and not believed yet
+    EXPECT_EQ(judged.clip[t] > kExchanged, (t >= 40 && t < 50) || (t >= 135 && t < 150)) << t;
+  }
+}
+
+TEST(KeypointSides, RatesMakeNoDifference) {
+  for (const int rate : {10, 30, 120, 240}) {
+    KeypointSides sides;
+    Rng rng(3, 0, 0);
+    int wrong = 0;
+    for (int t = 0; t < 3 * rate; ++t) {
+      const double time = static_cast<double>(t) / rate;
+      const bool truth = time >= 1 && time < 1.6;
+      const double exchanged = sides.step(facing(0.2 + 0.15 * rng.normal(), truth), t == 0 ? 0 : 1.0 / rate);
+      if ((exchanged > kExchanged) != truth) ++wrong;
+    }
+    EXPECT_LE(wrong, rate / 5) << rate;
+  }
+}
+
+TEST(KeypointSides, IgnoresWhatIsNotFinite) {
+  Keypoints3D broken = facing(0);
+  broken.points[0].x[1] = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(line_across(broken).has_value());
 }
 
 // Only a clip as a whole can tell that its first frames were the wrong ones.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
@@ -13,7 +14,7 @@ namespace silpose {
 namespace {
 
 constexpr double kIntervalOfDeviation = 1.645;  // half of a 90 % interval
-constexpr double kGap_s = 0.2;                  // shorter gaps do not end what is doubtful
+constexpr double kGap_s = 0.2;                  // [guess] shorter gaps do not end what is doubtful
 
 struct Stretch {
   double begin_s = 0, end_s = 0;
@@ -27,7 +28,7 @@ std::vector<Stretch> stretches(std::span<const StepReport> reports, double least
   std::vector<Stretch> found;
   for (const StepReport& report : reports) {
     const std::optional<double> now = value(report);
-    if (!now || !(*now >= least)) continue;
+    if (!now || !(*now > least)) continue;
     const double time = report.time_s();
     if (found.empty() || time - found.back().end_s > kGap_s) found.push_back({time, time});
     found.back().end_s = time;
@@ -102,14 +103,14 @@ std::vector<std::string> ambiguities(std::span<const StepReport> reports) {
   const auto turned = stretches(reports, kOpenWeight, [](const StepReport& r) { return std::optional(r.turned); });
   if (!turned.empty()) {
     lines.push_back(
-        fmt::format("front and back are open in {} frames ({}): a pose that faces the other way is about as "
+        fmt::format("front and back are ambiguous in {} frames ({}): a pose that faces the other way is about as "
                     "likely; --init with a pose, or a second camera, settles it",
                     frames_of(turned), times_of(turned)));
   }
   const auto crossed = stretches(reports, kOpenWeight, [](const StepReport& r) { return std::optional(r.crossed); });
   if (!crossed.empty()) {
     lines.push_back(
-        fmt::format("left and right leg are open in {} frames ({}): a pose with the legs exchanged is about "
+        fmt::format("left and right leg are ambiguous in {} frames ({}): a pose with the legs exchanged is about "
                     "as likely",
                     frames_of(crossed), times_of(crossed)));
   }

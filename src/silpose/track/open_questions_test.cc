@@ -54,8 +54,8 @@ TEST_F(OpenQuestions, NamesEachKindOfAmbiguity) {
   for (size_t t = 12; t < 14; ++t) some[t].turned = 0.3;
   some[20].crossed = some[30].crossed = 0.4;
   EXPECT_THAT(ambiguities(some), ElementsAre(HasSubstr("left for right in 5 frames (0.2-0.4 s)"),
-                                             HasSubstr("front and back are open in 2 frames (0.6-0.7 s)"),
-                                             HasSubstr("leg are open in 2 frames (1.0-1.0, 1.5-1.5 s)")));
+                                             HasSubstr("front and back are ambiguous in 2 frames (0.6-0.7 s)"),
+                                             HasSubstr("leg are ambiguous in 2 frames (1.0-1.0, 1.5-1.5 s)")));
 }
 
 }  // namespace

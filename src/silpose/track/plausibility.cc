@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <optional>
-#include <utility>
 
 #include "silpose/base/check.h"
 #include "silpose/geometry/rigid3.h"
@@ -23,11 +20,7 @@ constexpr double kOverlapDeviation = 0.02;  // metres that two spheres overlap, 
 constexpr double kYield = 0.02;             // metres that flesh gives way
 constexpr double kNeighbours = 2;           // radii: along the bones; nearer spheres are of one fold of flesh
 constexpr double kFloorDeviation = 0.02;    // metres below the floor
-// [guess] How far from over its feet a body's centre of mass is, metres: walkers pass over a foot within some 0.25 m.
-// Those who sit or fall are further off, and pay little more. Soles this much higher than the lowest carry little.
-constexpr double kBalanceDeviation = 0.12, kBalanceFreedom = 4, kCarryHeight = 0.05;
-constexpr double kSoleHeight = 0.03;  // of the body's height above the lowest point: what a body stands on
-constexpr double kNoFloor = 0.2;      // metres below: the floor is not where it is said to be, and no longer pushes
+constexpr double kNoFloor = 0.2;  // metres below: the floor is not where it is said to be, and no longer pushes
 
 double add_limits(const Skeleton& skeleton, const VectorXd& pose, VectorXd& gradient, MatrixXd& hessian) {
   constexpr double kLimit = 1 / (kLimitDeviation * kLimitDeviation);
@@ -106,26 +99,9 @@ Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : 
   const Skeleton& skeleton = body_->skeleton;
   spheres_ = flesh_spheres(*body_);
   bounds_ = bounds_of(skeleton.joints().size(), spheres_);
-  std::vector<SkinPoint> outermost = outermost_points(*body_);
 
   const PointMotion hanging(skeleton, std::vector<double>(skeleton.dofs().size(), 0.0));
-  const std::vector<std::optional<FleshPart>> parts = flesh_parts(*body_);
-  for (size_t j = 0; j < parts.size(); ++j) {
-    if (parts[j]) masses_.push_back({{static_cast<int>(j), parts[j]->centre_in_joint}, parts[j]->share});
-  }
-  const auto height_of = [&](const SkinPoint& p) { return hanging.position(p.joint_idx, p.x_in_joint).y(); };
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const SkinPoint& point : outermost) lowest = std::min(lowest, height_of(point));
-  std::vector<int> count;
-  for (const SkinPoint& point : outermost) {
-    if (height_of(point) > lowest + kSoleHeight * body_->height_m) continue;
-    if (soles_.empty() || soles_.back().joint_idx != point.joint_idx) {
-      soles_.push_back({point.joint_idx, Vector3d::Zero()});
-      count.push_back(0);
-    }
-    soles_.back().x_in_joint += (point.x_in_joint - soles_.back().x_in_joint) / ++count.back();
-  }
-  if (floor) points_ = std::move(outermost);
+  if (floor) points_ = outermost_points(*body_);
 
   const auto distance_at_zero = [&](const FleshSphere& a, const FleshSphere& b) {
     return (hanging.position(a.joint_idx, a.centre_in_joint) - hanging.position(b.joint_idx, b.centre_in_joint)).norm();
@@ -187,40 +163,6 @@ double Plausibility::add_penetration(const PointMotion& motion, VectorXd& gradie
   return cost;
 }
 
-// Student's t of the horizontal distance from the centre of mass to the soles that carry it.
-double Plausibility::add_balance(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
-  if (soles_.empty()) return 0;
-  const auto position = [&](const SkinPoint& point) { return motion.position(point.joint_idx, point.x_in_joint); };
-  std::vector<Vector3d> soles;
-  double lowest = std::numeric_limits<double>::infinity(), sum = 0;
-  for (const SkinPoint& sole : soles_) {
-    soles.push_back(position(sole));
-    lowest = std::min(lowest, soles.back().y());
-  }
-  std::vector<double> carries;
-  for (const Vector3d& sole : soles) sum += carries.emplace_back(std::exp(-(sole.y() - lowest) / kCarryHeight));
-  Vector3d off = Vector3d::Zero();
-  std::vector<Vector3d> masses;
-  for (const Mass& mass : masses_) off += mass.share * masses.emplace_back(position(mass.at));
-  for (size_t i = 0; i < soles.size(); ++i) off -= carries[i] / sum * soles[i];
-
-  constexpr double kScale = kBalanceDeviation * kBalanceDeviation;
-  const double squared = (off.x() * off.x() + off.z() * off.z()) / kScale;
-  const double weight = (kBalanceFreedom + 2) / (kBalanceFreedom + squared) / kScale;
-  VectorXd row(gradient.size());
-  for (const Vector3d& axis : {Vector3d(Vector3d::UnitX()), Vector3d(Vector3d::UnitZ())}) {
-    row.setZero();
-    for (size_t i = 0; i < masses.size(); ++i) {
-      motion.add_derivative(masses_[i].at.joint_idx, masses[i], masses_[i].share * axis, row);
-    }
-    for (size_t i = 0; i < soles.size(); ++i) {
-      motion.add_derivative(soles_[i].joint_idx, soles[i], -carries[i] / sum * axis, row);
-    }
-    add_residual(axis.dot(off), weight, row, gradient, hessian);
-  }
-  return (kBalanceFreedom + 2) * std::log1p(squared / kBalanceFreedom);
-}
-
 double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
   constexpr double kWeight = 1 / (kFloorDeviation * kFloorDeviation);
   std::vector<Vector3d> positions;
@@ -249,8 +191,7 @@ double Plausibility::add(const VectorXd& pose, const RestPull& rest, VectorXd& g
          (rest.weight > 0 ? add_rest(body_->skeleton, rest.directions_seen ? seen_deviation_ : deviation_, rest.weight,
                                      pose, gradient, hessian)
                           : 0) +
-         add_penetration(motion, gradient, hessian) +
-         (rest.directions_seen ? add_balance(motion, gradient, hessian) : 0) + add_floor(motion, gradient, hessian);
+         add_penetration(motion, gradient, hessian) + add_floor(motion, gradient, hessian);
 }
 
 }  // namespace silpose

@@ -44,7 +44,6 @@ class Plausibility {
   template <typename Visit>
   void for_each_overlap(const PointMotion& motion, const Visit& visit) const;
   double add_penetration(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
-  double add_balance(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
   double add_floor(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
 
   std::shared_ptr<const BodyModel> body_;
@@ -53,12 +52,6 @@ class Plausibility {
   std::vector<FleshSphere> bounds_;  // [J] a sphere about all spheres of a bone
   std::vector<BonePair> pairs_;
   std::vector<SkinPoint> points_;  // none without a floor
-  struct Mass {
-    SkinPoint at;
-    double share = 0;  // of the whole body's
-  };
-  std::vector<Mass> masses_;
-  std::vector<SkinPoint> soles_;  // the middle of what each bone stands on in the zero pose
 };
 
 }  // namespace silpose

@@ -72,22 +72,24 @@ LikelihoodOptions cropped_options(const TrackerOptions& options) {
 // Poses that the network of the first camera with keypoints recognises, the best few; none where it is not asked.
 class Recognition {
  public:
-  explicit Recognition(const TrackerOptions& options) : num_dofs_(options.body->skeleton.num_dofs()) {
+  explicit Recognition(const TrackerOptions& options) : body_(options.body), cameras_(options.cameras) {
     if (*options.regenerate_from != "network" || *options.regenerate == 0) return;
     for (const PinholeCamera& camera : options.cameras) proposals_.emplace_back(options.body, camera);
   }
   [[nodiscard]] StateBatch poses(std::span<const Observation> observations) const {
     constexpr int kCandidates = 4;
     for (size_t c = 0; c < proposals_.size(); ++c) {
-      if (observations[c].keypoints.empty() || observations[c].box.empty()) continue;
+      if (observations[c].box.empty() || observations[c].keypoints.empty()) continue;
+      if (!make_keypoint_term(*body_, cameras_[c], observations[c], EvidenceKind::kKeypoints)) continue;
       Rng unused(0, 0);
       return proposals_[c].propose(observations[c], kCandidates, unused);
     }
-    return StateBatch(0, num_dofs_);
+    return StateBatch(0, body_->skeleton.num_dofs());
   }
 
  private:
-  Eigen::Index num_dofs_;
+  std::shared_ptr<const BodyModel> body_;
+  std::vector<PinholeCamera> cameras_;       // [C]
   std::vector<LandmarkProposal> proposals_;  // [C], or none
 };
 

@@ -137,6 +137,16 @@ class ClipTracker {
       if (seen_[t]) order.push_back(t), score[t] = clarity(clip_[t]);
     }
     std::ranges::stable_sort(order, std::greater<>{}, [&](size_t t) { return score[t]; });
+    // What keypoints cost counts in some frames only: these are compared, as they tell more.
+    if (start_evidence(options_) != EvidenceKind::kSilhouette) {
+      const auto has_keypoints = [&](size_t t) {
+        const auto& seen = clip_[t].observations;
+        return !seen[start_camera(seen)].landmarks.empty();
+      };
+      if (std::ranges::any_of(order, has_keypoints)) {
+        std::erase_if(order, [&](size_t t) { return !has_keypoints(t); });
+      }
+    }
     std::vector<size_t> starts;
     for (const size_t t : order) {
       const bool apart = std::ranges::all_of(starts, [&](size_t other) {
@@ -145,7 +155,6 @@ class ClipTracker {
       if (apart) starts.push_back(t);
       if (starts.size() == kNumStarts) break;
     }
-    const std::shared_ptr<const Proposal> proposal = start_proposal(options_);
     // Passes start anew, so a coarse mesh will do to choose.
     const auto body = level_of_detail(options_.body, *options_of_pass(options_).lod_vertices);
     const CoverageLikelihood likelihood(body, options_.cameras);
@@ -156,8 +165,10 @@ class ClipTracker {
     for (const size_t t : starts) {
       if (!proceed()) break;
       Rng rng(options_.seed, t);
-      const auto found = initialise(likelihood, plausibility, clip_[t].observations,
-                                    proposal->propose(clip_[t].observations.front(), 0, rng), search);
+      const auto& seen = clip_[t].observations;
+      const size_t camera = start_camera(seen);
+      const StateBatch candidates = start_proposal(options_, camera)->propose(seen[camera], 0, rng);
+      const auto found = initialise(likelihood, plausibility, seen, candidates, search);
       if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
     }
     return chosen;

@@ -57,7 +57,7 @@ struct Tracker::Impl {
       likelihoods.coarse = std::make_shared<const CoverageLikelihood>(coarse, options.cameras, kRankingRows);
     }
     filter = make_pose_filter(options, likelihoods);
-    for_start = start_proposal(options);
+    for (size_t c = 0; c < options.cameras.size(); ++c) for_start.push_back(start_proposal(options, c));
     if (!options.proposal) options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton);
   }
 
@@ -65,8 +65,9 @@ struct Tracker::Impl {
   std::vector<StartingPose> starting_poses(std::span<const Observation> observations) const {
     if (options.initial_pose && last_pose.empty()) return {{*options.initial_pose, 0}};
     Rng rng(options.seed, static_cast<uint64_t>(steps));
-    const Proposal& proposal = started ? *options.proposal : *for_start;
-    StateBatch candidates = proposal.propose(observations.front(), 0, rng);
+    const size_t camera = start_camera(observations);
+    const Proposal& proposal = started ? *options.proposal : *for_start[camera];
+    StateBatch candidates = proposal.propose(observations[camera], 0, rng);
     if (!last_pose.empty()) {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
@@ -82,6 +83,18 @@ struct Tracker::Impl {
       search.first_heading = kSeekHeadings * num_seeks;
     }
     return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, search);
+  }
+
+  // Whether any camera has something to track by.
+  bool any_is_usable(std::span<const Observation> observations) const {
+    if (options.evidence != EvidenceKind::kKeypoints) return any_has_a_say(observations);
+    for (size_t c = 0; c < observations.size(); ++c) {
+      if (has_a_say(observations[c]) &&
+          make_keypoint_term(*options.body, options.cameras[c], observations[c], options.evidence)) {
+        return true;
+      }
+    }
+    return false;
   }
 
   // A camera whose network exchanged left and right tells nothing by its keypoints. Empty where none did.
@@ -113,13 +126,15 @@ struct Tracker::Impl {
   }
 
   // How well the estimate faces where the keypoints do, over the last frames.
-  void follow_facing(std::span<const Observation> observations, double dt_s) {
+  void follow_facing(std::span<const Observation> observations, double dt_s, bool is_new) {
     const Eigen::Vector3d tracked = line_across_pose(last_pose);
+    if (tracked.isZero()) return;
     for (size_t c = 0; c < observations.size(); ++c) {
       const std::optional<Eigen::Vector3d> seen = line_across(observations[c].keypoints);
       if (!seen) continue;
       const double agreement = tracked.dot(world_from_keypoints(options.cameras[c], observations[c].keypoints) * *seen);
-      facing_agreement += std::min(dt_s / kFacingMemory_s, 1.0) * (agreement - facing_agreement);
+      const double share = is_new ? 1 : std::min(dt_s / kFacingMemory_s, 1.0);
+      facing_agreement += share * (agreement - facing_agreement);
       since_facing_s = 0;
       return;
     }
@@ -129,11 +144,12 @@ struct Tracker::Impl {
   // Whether a pose faces elsewhere than the estimate, with which keypoints agreed until now.
   bool is_turned(const StartingPose& start) const {
     if (options.evidence == EvidenceKind::kSilhouette || since_facing_s > kFacingKnown_s) return false;
-    return facing_agreement > kTurnedCosine &&
-           line_across_pose(start.pose).dot(line_across_pose(last_pose)) < kTurnedCosine;
+    const Eigen::Vector3d tracked = line_across_pose(last_pose);
+    return !tracked.isZero() && facing_agreement > kTurnedCosine &&
+           line_across_pose(start.pose).dot(tracked) < kTurnedCosine;
   }
 
-  // The weight of hypotheses that face away from the estimate, and of those whose legs are where its others are.
+  // The weights of hypotheses that face away from the estimate, and of those whose feet are exchanged against its own.
   void name_ambiguities(StepReport& report) const {
     if (!options.num_hypotheses) return;
     const std::optional<int> right = options.body->skeleton.find_joint("right_foot"),
@@ -206,8 +222,8 @@ struct Tracker::Impl {
   Likelihoods likelihoods;
   std::vector<BatchRenderer> seen_by, expected_by;  // [C] the whole mesh, and a coarse one
   std::unique_ptr<PoseFilter> filter;
-  std::shared_ptr<const Proposal> for_start;
-  std::vector<std::unique_ptr<Segmenter>> segmenters;  // online, one a camera; made when first needed
+  std::vector<std::shared_ptr<const Proposal>> for_start;  // [C]
+  std::vector<std::unique_ptr<Segmenter>> segmenters;      // online, one a camera; made when first needed
   std::vector<double> last_pose;
   bool started = false;
   int num_seeks = 0;
@@ -237,7 +253,7 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
   const double dt_s = t.steps == 0 ? 0 : static_cast<double>(time_ns - t.last_time_ns) * 1e-9;
   const std::vector<Observation> judged = t.without_exchanged(given, dt_s, report.exchanged);
   const std::span<const Observation> observations = judged.empty() ? given : std::span(judged);
-  const bool seen = any_has_a_say(observations);
+  const bool seen = t.any_is_usable(observations);
   if (seen && t.started && static_cast<double>(time_ns - t.last_seen_ns) * 1e-9 > kLongestCoast_s) t.started = false;
 
   if (seen && !t.started) {
@@ -257,8 +273,8 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
     report.effective_sample_size = t.filter->coast(dt_s).effective_sample_size;
   }
   if (t.started) t.summarise(observations, report);
-  if (t.started && seen) t.follow_facing(observations, dt_s);
   const bool is_new = report.state == StepReport::State::kInitialised;
+  if (t.started && seen) t.follow_facing(observations, dt_s, is_new);
   if (t.started && seen) t.seek_anew(observations, is_new ? 0 : dt_s, report);
 
   ++t.steps;

@@ -50,11 +50,12 @@ void TrackerOptions::check() const {
             "hypotheses are fitted: they go neither with particles and layers nor with preset thesis");
     require(*all.num_hypotheses >= 1 && *all.num_hypotheses <= 64,
             fmt::format("{} hypotheses, not within 1..64", *all.num_hypotheses));
-    require(
-        !all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.regenerate_from && !all.metric &&
-            !all.sharpness,
-        "motion, sigma, resampling, regenerate, metric and sharpness are of the sampling filters: give particles or "
-        "layers");
+    require(!all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.regenerate_from &&
+                !all.metric && !all.sharpness,
+            "motion, sigma, resampling, regenerate, regenerate from, metric and sharpness are of the sampling filters: "
+            "give "
+            "particles or "
+            "layers");
     require(!all.estimate && !root_fixed && resample_below == 1,
             "estimate, a fixed root and resample below are of the sampling filters: give particles or layers");
   } else {
@@ -67,6 +68,9 @@ void TrackerOptions::check() const {
             fmt::format("sigma {} degrees, not within (0, 90]", *all.sigma_deg));
     require(*all.regenerate_from == "random" || *all.regenerate_from == "network",
             fmt::format("regenerate from '{}' is not random or network", *all.regenerate_from));
+    require(
+        *all.regenerate_from == "random" || (*all.regenerate > 0 && *all.resampling == "comb"),
+        "regenerate from network: nothing is regenerated; give --resampling comb and --regenerate, or preset thesis");
     require(*all.metric == "pixel-count" || *all.metric == "coverage",
             fmt::format("metric '{}' is not pixel-count or coverage", *all.metric));
     require(std::isfinite(*all.sharpness) && *all.sharpness > 0,
@@ -94,8 +98,15 @@ EvidenceKind start_evidence(const TrackerOptions& options) {
   return options.landmarks ? EvidenceKind::kBoth : EvidenceKind::kSilhouette;
 }
 
-std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options) {
-  if (options.landmarks) return std::make_shared<const LandmarkProposal>(options.body, options.cameras.front());
+size_t start_camera(std::span<const Observation> observations) {
+  for (size_t c = 0; c < observations.size(); ++c) {
+    if (!observations[c].landmarks.empty() && !observations[c].box.empty()) return c;
+  }
+  return 0;
+}
+
+std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options, size_t camera_idx) {
+  if (options.landmarks) return std::make_shared<const LandmarkProposal>(options.body, options.cameras[camera_idx]);
   if (options.proposal) return options.proposal;
   return std::make_shared<const CommonPoses>(options.body->skeleton);
 }

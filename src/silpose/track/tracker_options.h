@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,7 +36,7 @@ struct TrackerOptions {
   std::optional<double> sigma_deg;             // of a typical rotational DOF per 1/30 s; the others scale with it
   std::optional<std::string> resampling;       // filter/resampling.h
   double resample_below = 1;                   // of n_eff / N; 1: every step
-  std::optional<double> regenerate;            // fraction of the particles, drawn anew around the estimate
+  std::optional<double> regenerate;            // fraction of the particles that is drawn anew, by the comb
   std::optional<std::string> regenerate_from;  // "random": about the estimate; "network": about what it recognises
   std::optional<std::string> metric;           // "pixel-count" or "coverage" (likelihood/silhouette_likelihood.h)
   std::optional<double> sharpness;
@@ -47,8 +48,7 @@ struct TrackerOptions {
   // What poses are compared by while they are tracked, and whether starts go by keypoints, too, where there are any.
   EvidenceKind evidence = EvidenceKind::kSilhouette;
   bool landmarks = false;
-  // Candidates for the start, and for where the fitted mixture seeks the pose anew; absent: the common poses. What the
-  // sampling filters regenerate is drawn around their estimate.
+  // Candidates for the start, and for where the fitted mixture seeks the pose anew; absent: the common poses.
   std::shared_ptr<const Proposal> proposal;
 
   // Errors: throws std::invalid_argument that names the option and its value.
@@ -62,6 +62,10 @@ struct TrackerOptions {
 EvidenceKind start_evidence(const TrackerOptions& options);
 
 // Candidates for the start: fitted to landmarks where these count, else the options' proposal, else the common poses.
-std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options);
+std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options, size_t camera_idx);
+
+// The camera whose observation starts go by: the first one with keypoints, else the first. Shapes: one observation per
+// camera.
+size_t start_camera(std::span<const Observation> observations);
 
 }  // namespace silpose
