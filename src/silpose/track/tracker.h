@@ -1,4 +1,5 @@
-// Tracker: the method. One step a frame: predict, fit or sample, weigh by silhouette, estimate. No I/O.
+// Tracker: the method. One step a frame: predict, fit or sample, weigh by silhouettes and keypoints,
+// estimate. No I/O.
 // Presets: `default`, a mixture of four hypotheses, each fitted to the silhouettes and predicted at constant velocity
 // (mixture_filter.h: bell1993, sminchisescu2003); `accurate`, the same with eight hypotheses on the whole mesh, which
 // track_clip() also smooths over the clip; `thesis`, two plain particle filters for root and pose (cormier2019
