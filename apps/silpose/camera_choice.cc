@@ -7,6 +7,7 @@
 #include "apps/silpose/command.h"
 #include "silpose/base/check.h"
 #include "silpose/geometry/calibration_file.h"
+#include "silpose/geometry/rigid3.h"
 
 namespace silpose::app {
 namespace {
@@ -16,6 +17,21 @@ std::string name_list(const std::vector<PinholeCamera>& cameras) {
   for (const PinholeCamera& camera : cameras) names += (names.empty() ? "" : ", ") + camera.name;
   return names;
 }
+
+// A fisheye lens of 8 mm to a long telephoto one of 600 mm; along 16:9 that is 134 to 3.6 degrees.
+constexpr double kShortest_mm35 = 8, kLongest_mm35 = 600;
+constexpr double kNarrowest_deg = 3, kWidest_deg = 140;
+
+FocalSource focal_source(const CameraOptions& options, const PictureSize& size) {
+  if (options.focal_mm35) return {{focal_px_of_mm35(*options.focal_mm35, size.width, size.height), 0}, "--focal-mm35"};
+  if (options.fov_deg) {
+    return {{focal_px_of_view(to_radians(*options.fov_deg), size.width, size.height), 0}, "--fov-deg"};
+  }
+  if (size.focal_mm35) return {focal_length_of_metadata(*size.focal_mm35, size.width, size.height), "metadata"};
+  return {usual_focal_length(size.width, size.height), "assumed"};
+}
+
+Estimated focal_px(const FocalPrior& prior) { return {prior.focal_px, prior.focal_px * prior.deviation}; }
 
 }  // namespace
 
@@ -31,17 +47,46 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
       ->check(CLI::IsMember({"m", "mm"}));
 }
 
+void add_focal_options(CLI::App& command, CameraOptions& options) {
+  command
+      .add_option("--focal-mm35", options.focal_mm35,
+                  "Focal length without --camera FILE: 35 mm equivalent, by the picture's diagonal; kept as it is")
+      ->check(within(kShortest_mm35, kLongest_mm35));
+  command
+      .add_option("--fov-deg", options.fov_deg,
+                  "The same by the field of view along the picture's larger side, degrees")
+      ->check(within(kNarrowest_deg, kWidest_deg));
+}
+
+std::string focal_text(const Estimated& focal_px, const FocalSource& source) {
+  if (source.prior.deviation == 0) return fmt::format("focal length {:.0f} px ({})", focal_px.mean, source.from);
+  return fmt::format("focal length {:.0f} ± {:.0f} px ({})", focal_px.mean, focal_px.deviation,
+                     source.from == "metadata" ? "from the file's metadata" : "as phones and webcams have it");
+}
+
+nlohmann::ordered_json facts_of(const FocalSource& source) {
+  const Estimated focal = focal_px(source.prior);
+  return {{"mean", focal.mean}, {"std", focal.deviation}, {"from", source.from}};
+}
+
 Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<PictureSize>& sizes) {
   CameraChoice choice;
+  if (options.focal_mm35 && options.fov_deg) throw UsageError("--focal-mm35: not together with --fov-deg");
+  if (options.has_file() && (options.focal_mm35 || options.fov_deg)) {
+    throw UsageError(fmt::format("{}: not together with --camera {}", options.focal_mm35 ? "--focal-mm35" : "--fov-deg",
+                                 options.file));
+  }
   check(!options.file.empty() || !sizes.empty(), "choose_cameras: neither a file nor a picture size");
   if (!options.has_file() && !sizes.empty()) {
     if (!options.names.empty()) throw UsageError("--camera-name: needs --camera FILE.toml");
     if (sizes.size() > 1) throw UsageError("several cameras need --camera FILE.toml");
+    choice.focal = focal_source(options, sizes[0]);
     choice.cameras.push_back(default_camera(sizes[0].width, sizes[0].height));
-    choice.warnings.push_back(
-        fmt::format("no camera file: assumed a level camera 1.5 m above the floor with a focal length of {:.0f} px; "
-                    "lengths and angles are only as good as that guess",
-                    choice.cameras[0].fx));
+    choice.cameras[0].fx = choice.cameras[0].fy = choice.focal->prior.focal_px;
+    choice.warnings.push_back(fmt::format(
+        "no camera file: assumed a level camera 1.5 m above the floor, {}; lengths and angles are only as good as that "
+        "guess",
+        focal_text(focal_px(choice.focal->prior), *choice.focal)));
     return choice;
   }
 

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "silpose/base/result.h"
+#include "silpose/calibrate/focal_prior.h"
 #include "silpose/calibrate/person_camera.h"
 #include "silpose/geometry/camera.h"
 
@@ -19,25 +21,42 @@ struct CameraOptions {
   std::string file;  // or kAssumedCamera
   std::vector<std::string> names;
   std::string up, unit;
+  std::optional<double> focal_mm35, fov_deg;  // of a camera without a file
   [[nodiscard]] bool has_file() const { return !file.empty() && file != kAssumedCamera; }
+};
+
+// What is known of the focal length of a camera without a file, and from where: "metadata", "assumed", or the option.
+struct FocalSource {
+  FocalPrior prior;
+  std::string from;
 };
 
 struct CameraChoice {
   std::vector<PinholeCamera> cameras;  // [C]
   std::vector<std::string> warnings;
+  std::optional<FocalSource> focal;        // without a file
   std::optional<CameraEstimate> estimate;  // where the camera is one
   double estimating_s = 0;
 };
 
 void add_camera_options(CLI::App& command, CameraOptions& options);
+// --focal-mm35 and --fov-deg, for commands that can do without a file.
+void add_focal_options(CLI::App& command, CameraOptions& options);
 
 struct PictureSize {
   int width = 0, height = 0;
+  std::optional<double> focal_mm35 = {};  // by the clip's metadata
 };
 
 // One camera a picture size, in order, assumed where there is no file; without sizes all that the file, or
 // --camera-name, names. Errors: those of the file; a name that is not in it; another number of cameras; a camera
-// calibrated for another size.
+// calibrated for another size. Throws UsageError for options that do not go together.
 Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<PictureSize>& sizes);
+
+// "focal length 960 ± 192 px (as phones and webcams have it)", of an estimate or of what was known before.
+std::string focal_text(const Estimated& focal_px, const FocalSource& source);
+
+// {"mean", "std", "from"} in pixels: what was known before the clip was looked at.
+nlohmann::ordered_json facts_of(const FocalSource& source);
 
 }  // namespace silpose::app

@@ -49,15 +49,13 @@ nlohmann::ordered_json figure(const Estimated& value, double unit = 1) {
   return {{"mean", unit * value.mean}, {"std", unit * value.deviation}};
 }
 
-std::string warning_of(const CameraEstimate& estimate) {
+std::string warning_of(const CameraEstimate& estimate, const FocalSource& source) {
   const double tilt = to_degrees(estimate.tilt.mean);
   return fmt::format(
-      "no camera file: estimated from the subject in {} frames: focal length {:.0f} ± {:.0f} px, {:.2f} ± {:.2f} m "
-      "above the floor, tilted {:.0f} ± {:.0f} degrees {}, for a subject {:.2f} m tall; lengths and angles are only as "
-      "good as that",
-      estimate.num_frames, estimate.focal_px.mean, estimate.focal_px.deviation, estimate.height_m.mean,
-      estimate.height_m.deviation, std::abs(tilt), to_degrees(estimate.tilt.deviation), tilt < 0 ? "up" : "down",
-      estimate.body_height_m);
+      "no camera file: estimated from the subject in {} frames: {}, {:.2f} ± {:.2f} m above the floor, tilted {:.0f} ± "
+      "{:.0f} degrees {}, for a subject {:.2f} m tall; lengths and angles are only as good as that",
+      estimate.num_frames, focal_text(estimate.focal_px, source), estimate.height_m.mean, estimate.height_m.deviation,
+      std::abs(tilt), to_degrees(estimate.tilt.deviation), tilt < 0 ? "up" : "down", estimate.body_height_m);
 }
 
 }  // namespace
@@ -70,7 +68,7 @@ Result<void> estimate_camera_of(ObservationSource& source, double body_height_m,
   if (Console::interrupted()) return error("interrupted before the first frame");
   if (const Result<void> rewound = source.rewind(console); !rewound) return rewound;
   const PinholeCamera& assumed = choice.cameras[0];
-  choice.estimate = estimate_camera(extents->whole, assumed.width, assumed.height, body_height_m);
+  choice.estimate = estimate_camera(extents->whole, assumed.width, assumed.height, body_height_m, choice.focal->prior);
   choice.estimating_s = stopwatch.seconds();
   if (!choice.estimate) {
     choice.warnings.push_back(
@@ -80,7 +78,7 @@ Result<void> estimate_camera_of(ObservationSource& source, double body_height_m,
     return {};
   }
   choice.cameras = {choice.estimate->camera};
-  choice.warnings = {warning_of(*choice.estimate)};
+  choice.warnings = {warning_of(*choice.estimate, *choice.focal)};
   return {};
 }
 

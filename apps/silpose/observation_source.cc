@@ -144,7 +144,9 @@ Result<CameraChoice> choose_cameras_of(const InputOptions& input, const CameraOp
   if (!video) return video.failure();
   std::vector<PictureSize> sizes;
   sizes.reserve(static_cast<size_t>(video->num_cameras()));
-  for (int c = 0; c < video->num_cameras(); ++c) sizes.push_back({video->width(c), video->height(c)});
+  for (int c = 0; c < video->num_cameras(); ++c) {
+    sizes.push_back({video->width(c), video->height(c), video->focal_mm35(c)});
+  }
   return choose_cameras(camera, sizes);
 }
 

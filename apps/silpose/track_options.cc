@@ -91,6 +91,7 @@ void add_track_options(CLI::App& app, TrackOptions& options) {
                "have a result already");
   add_model_option(app, options.model);
   add_camera_options(app, options.camera);
+  add_focal_options(app, options.camera);
   app.add_option(
          "--preset", options.tracker.preset,
          "default: hypotheses fitted online; accurate: more of them, the whole mesh, smoothed; thesis: two plain "

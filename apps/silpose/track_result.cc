@@ -81,6 +81,7 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   run["body"] = told.writer.body().name;
   run["size_deviation"] = tracked.used.size_deviation;
   if (tracked.body_fit && !tracked.recording.steps.empty()) run["fitted"] = facts_of(*tracked.body_fit);
+  if (told.camera.focal) run["focal_prior"] = facts_of(*told.camera.focal);
   if (told.camera.estimate) run["camera_estimate"] = facts_of(*told.camera.estimate);
   run["frames"] = tracked.num_frames;
   run["frames_tracked"] = summary.frames_tracked;

@@ -37,6 +37,10 @@ for option in '--motion diffusion' '--sigma-deg 3' '--resampling comb' '--resamp
               '--sharpness 50' '--metric pixel-count' '--root fixed' '--estimate mode'; do
   expect_failure 2 "${option%% *}.*particles" "${fitted[@]}" $option
 done
+expect_failure 2 'focal-mm35.*fov-deg' "${uncalibrated[@]}" --focal-mm35 26 --fov-deg 70
+expect_failure 2 'fov-deg.*camera truth/camera.toml' "${masks[@]}" --fov-deg 70
+expect_failure 2 'focal-mm35' "${uncalibrated[@]}" --focal-mm35 0
+expect_failure 2 'fov-deg' "${uncalibrated[@]}" --fov-deg nan
 expect_failure 2 'out' track truth/masks
 expect_failure 2 'VIDEO' track --out result
 expect_failure 2 'particles' "${masks[@]}" --particles 0

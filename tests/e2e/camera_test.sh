@@ -12,6 +12,11 @@ expect_at_most "$(number estimated.json camera_estimate height_m mean)" "$(awk "
 expect_at_most "$(number estimated.json camera_estimate tilt_deg mean)" 3 "tilt, degrees"
 expect_at_least "$(number estimated.json camera_estimate tilt_deg mean)" -3 "tilt, degrees"
 expect_at_least "$(number estimated.json camera_estimate focal_px std)" 50 "deviation of a focal length that nothing tells"
+[[ $(number estimated.json focal_prior mean) == 480.0 ]] || fail "another prior than 0.75 of 640 px"
+# 90 degrees over 640 px; kept as it is.
+"$silpose" "${track[@]}" --fov-deg 90 --out given >given.json 2>warnings.txt || fail "--fov-deg: exit $?"
+grep -q 'focal length 320 px (--fov-deg)' warnings.txt || fail "nothing says whose focal length it is: $(cat warnings.txt)"
+expect_at_most "$(number given.json camera_estimate focal_px std)" 0 "deviation of a focal length that is given"
 grep -q 'none: estimated' estimated/report.html || fail "the report does not say so"
 
 # The result's files lead to the same: its options, and its camera.
@@ -21,7 +26,7 @@ cmp -s estimated/poses.csv again/poses.csv || fail "--config: other poses"
 [[ $(grep matrix estimated/camera.toml) == "$(grep matrix again/camera.toml)" ]] || fail "--camera: another camera"
 
 "$silpose" "${track[@]}" --camera assumed --end 0.1 --out assumed >assumed.json 2>warnings.txt || fail "an assumed camera: exit $?"
-grep -q 'assumed a level camera 1.5 m' warnings.txt || fail "nothing says that the camera is assumed"
+grep -q 'assumed a level camera 1.5 m above the floor, focal length 480 ± 96 px' warnings.txt || fail "nothing says that the camera is assumed"
 grep -q 'camera_estimate' assumed.json && fail "an assumed camera is called an estimate"
 "$silpose" "${track[@]}" --end 0.1 --out short >short.json 2>warnings.txt || fail "a clip that is too short: exit $?"
 grep -q 'the camera was not estimated: too few of 1 frames' warnings.txt ||

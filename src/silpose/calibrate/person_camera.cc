@@ -24,11 +24,12 @@ using Normal = Eigen::Matrix<double, kNumUnknowns, kNumUnknowns>;
 using Place = Eigen::Vector2d;
 using Residual = Eigen::Vector4d;  // feet x, y and head x, y
 
-// Of cameras in use, and of people who walk: mean and deviation. The focal length is relative to the guess of
-// default_camera(), the height to a metre; reach is how far before the body's axis the nearest foot is, metres; stoop
-// how much lower than its height a body stands, lean how far the head is beside the feet, both in parts of its height.
+// Of cameras in use, and of people who walk: mean and deviation [guesses]. The focal length is relative to the caller's
+// prior, whose deviation comes in place of the 1; the height to a metre; reach is how far before the body's axis the
+// nearest foot is, metres; stoop how much lower than its height a body stands, lean how far the head is beside the
+// feet, both in parts of its height.
 const Unknowns kPriorMean = (Unknowns() << 0, 0.03, 0, std::log(1.4), 0.22, 0.02, 0).finished();
-const Unknowns kPriorDeviation = (Unknowns() << 0.35, 0.18, 0.02, 0.4, 0.12, 0.02, 0.03).finished();
+const Unknowns kPriorDeviation = (Unknowns() << 1, 0.18, 0.02, 0.4, 0.12, 0.02, 0.03).finished();
 // Extents are taken as medians over a stride, since feet alternate and heads bob with every step: a window every half
 // of it. Deviations of such a median, in parts of the body's height in the picture; degrees of freedom of Student's t;
 // and as many windows count in full: of a longer clip they resemble each other.
@@ -41,7 +42,16 @@ constexpr double kMostWindows = 16;
 constexpr int kMostSteps = 60;
 
 struct View {
-  double focal_guess = 0, cx = 0, cy = 0, body_height = 0;
+  FocalPrior focal;
+  double cx = 0, cy = 0, body_height = 0;
+
+  [[nodiscard]] bool focal_is_known() const { return focal.deviation == 0; }
+  // Of the unknowns. A known focal length keeps 1: no residual depends on it, and it stays where it is.
+  [[nodiscard]] Unknowns prior_deviation() const {
+    Unknowns deviation = kPriorDeviation;
+    if (!focal_is_known()) deviation[kLogFocal] = focal.deviation;
+    return deviation;
+  }
 };
 
 Eigen::Vector2d nowhere() { return Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN()); }
@@ -52,7 +62,7 @@ Eigen::Vector2d project(const View& view, const Unknowns& at, double right, doub
   const double down = std::cos(at[kTilt]) * below - std::sin(at[kTilt]) * ahead;
   const double depth = std::sin(at[kTilt]) * below + std::cos(at[kTilt]) * ahead;
   if (!(depth > PinholeCamera::kNear)) return nowhere();
-  const double scale = view.focal_guess * std::exp(at[kLogFocal]) / depth;
+  const double scale = view.focal.focal_px * std::exp(at[kLogFocal]) / depth;
   const double c = std::cos(at[kRoll]), s = std::sin(at[kRoll]);
   return {view.cx + scale * (c * right - s * down), view.cy + scale * (s * right + c * down)};
 }
@@ -72,7 +82,7 @@ class PersonFit {
   // REQUIRES: `extents` that outlive it.
   PersonFit(const View& view, std::span<const PersonExtent> extents, const Unknowns& start)
       : view_(view), extents_(extents), at_(start) {
-    const double focal = view.focal_guess * std::exp(start[kLogFocal]);
+    const double focal = view.focal.focal_px * std::exp(start[kLogFocal]);
     for (const PersonExtent& seen : extents) {
       const double ahead = focal * view.body_height / seen.height();
       places_.emplace_back((seen.feet.x() - view.cx) / focal * ahead, std::log(ahead));
@@ -115,7 +125,7 @@ class PersonFit {
   [[nodiscard]] double share() const { return std::min(0.5, kMostWindows / static_cast<double>(extents_.size())); }
 
   [[nodiscard]] double cost_here() const {
-    double sum = (at_ - kPriorMean).cwiseQuotient(kPriorDeviation).squaredNorm();
+    double sum = (at_ - kPriorMean).cwiseQuotient(view_.prior_deviation()).squaredNorm();
     for (size_t i = 0; i < extents_.size(); ++i) {
       const double squared = residual_of(view_, extents_[i], at_, places_[i]).squaredNorm();
       if (!std::isfinite(squared)) return std::numeric_limits<double>::infinity();
@@ -130,6 +140,10 @@ class PersonFit {
     const Residual residual = residual_of(view_, seen, at_, places_[i]);
     Eigen::Matrix<double, 4, kNumUnknowns> by_unknowns;
     for (Eigen::Index u = 0; u < kNumUnknowns; ++u) {
+      if (u == kLogFocal && view_.focal_is_known()) {
+        by_unknowns.col(u).setZero();
+        continue;
+      }
       const Unknowns change = kStep * Unknowns::Unit(u);
       by_unknowns.col(u) =
           (residual_of(view_, seen, at_ + change, places_[i]) - residual_of(view_, seen, at_ - change, places_[i])) /
@@ -150,7 +164,7 @@ class PersonFit {
 
   // The normal equations of the unknowns, all places at their best.
   [[nodiscard]] Normal reduced(double damping, Unknowns* slope, std::vector<Linearised>* frames) const {
-    const Unknowns precision = kPriorDeviation.cwiseAbs2().cwiseInverse();
+    const Unknowns precision = view_.prior_deviation().cwiseAbs2().cwiseInverse();
     Normal normal = precision.asDiagonal();
     Unknowns down = precision.cwiseProduct(at_ - kPriorMean);
     Normal eliminated = Normal::Zero();
@@ -212,17 +226,18 @@ std::vector<PersonExtent> over_strides(std::span<const PersonExtent> extents, do
 }  // namespace
 
 std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> extents, int width, int height,
-                                              double body_height_m) {
+                                              double body_height_m, const FocalPrior& focal_length) {
   check(width > 0 && height > 0 && body_height_m > 0, "estimate_camera: picture {}x{}, body {} m", width, height,
         body_height_m);
+  check(focal_length.focal_px > 0 && focal_length.deviation >= 0, "estimate_camera: focal length {} px within {}",
+        focal_length.focal_px, focal_length.deviation);
   if (extents.size() < kFewestExtents) return std::nullopt;
   const double upright = least_slenderness(extents);
   const auto num_upright = static_cast<size_t>(
       std::ranges::count_if(extents, [&](const PersonExtent& seen) { return seen.slenderness >= upright; }));
   const std::vector<PersonExtent> windows = over_strides(extents, upright);
   if (num_upright < kFewestExtents || windows.empty()) return std::nullopt;
-  const PinholeCamera guess = default_camera(width, height);
-  const View view{guess.fx, guess.cx, guess.cy, body_height_m};
+  const View view{focal_length, width / 2.0, height / 2.0, body_height_m};
   std::optional<PersonFit> best;
   for (const double tilt : {-0.2, 0.0, 0.2, 0.5}) {
     for (const double camera_height : {0.7, 1.5, 2.6}) {
@@ -242,8 +257,8 @@ std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> exte
   const Normal covariance = best->covariance();
   const auto deviation = [&](Unknown u) { return std::sqrt(covariance(u, u)); };
   CameraEstimate estimate;
-  const double focal = view.focal_guess * std::exp(at[kLogFocal]), above = std::exp(at[kLogHeight]);
-  estimate.focal_px = {focal, focal * deviation(kLogFocal)};
+  const double focal = view.focal.focal_px * std::exp(at[kLogFocal]), above = std::exp(at[kLogHeight]);
+  estimate.focal_px = {focal, view.focal_is_known() ? 0 : focal * deviation(kLogFocal)};
   estimate.tilt = {at[kTilt], deviation(kTilt)};
   estimate.roll = {at[kRoll], deviation(kRoll)};
   estimate.height_m = {above, above * deviation(kLogHeight)};

@@ -1,7 +1,8 @@
 // estimate_camera(): focal length, tilt, roll and height of a camera that nobody calibrated, from where the head and
 // the feet of an upright person on the floor are seen, and how tall the person is. A person who comes nearer tells how
 // high the camera stands and where the horizon is; one who is seen leaning at the picture's sides, where the picture
-// is tilted, tells the focal length. What a clip does not tell stays at its prior, and its deviation says so.
+// is tilted, tells the focal length. What a clip does not tell stays at its prior (of the focal length: the caller's),
+// and its deviation says so.
 // Based on: metrology of a single view (references.bib: criminisi2000), as a maximum a posteriori fit with residuals of
 // Student's t, since people stoop, jump and raise their arms. Threads: functions without state.
 #pragma once
@@ -9,6 +10,7 @@
 #include <optional>
 #include <span>
 
+#include "silpose/calibrate/focal_prior.h"
 #include "silpose/calibrate/person_extent.h"
 #include "silpose/geometry/camera.h"
 
@@ -27,10 +29,11 @@ struct CameraEstimate {
 
 inline constexpr size_t kFewestExtents = 8;
 
-// `body_height_m` is taken as known: the camera's height grows in proportion to it. Frames in which
-// the person crouches are left out. Nothing where fewer than kFewestExtents are left, or they are scattered. Errors:
-// throws std::invalid_argument for sizes that are not positive.
+// `body_height_m` is taken as known: the camera's height grows in proportion to it. A `focal_length` without deviation
+// is taken as it is. Frames in which the person crouches are left out. Nothing where fewer than kFewestExtents are
+// left, or they are scattered. Errors: throws std::invalid_argument for sizes that are not positive.
 [[nodiscard]] std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> extents, int width,
-                                                            int height, double body_height_m);
+                                                            int height, double body_height_m,
+                                                            const FocalPrior& focal_length);
 
 }  // namespace silpose

@@ -11,6 +11,7 @@ namespace silpose {
 namespace {
 
 constexpr double kBodyHeight = 1.7;
+const FocalPrior kUsual = usual_focal_length(640, 480);  // 480 px within 20 %
 
 PinholeCamera camera_at(double focal_px, double height, double tilt_deg) {
   const double tilt = to_radians(tilt_deg);
@@ -44,14 +45,14 @@ void expect_inside(const Estimated& estimate, double truth, double deviations) {
 TEST(EstimateCamera, FindsHeightAndTilt) {
   for (const double tilt_deg : {-8.0, 0.0, 12.0}) {
     for (const double height : {0.8, 2.2}) {
-      const PinholeCamera truth = camera_at(650, height, tilt_deg);
-      const auto estimate = estimate_camera(walk(truth, 1, -2), 640, 480, kBodyHeight);
+      const PinholeCamera truth = camera_at(540, height, tilt_deg);
+      const auto estimate = estimate_camera(walk(truth, 1, -2), 640, 480, kBodyHeight, kUsual);
       ASSERT_TRUE(estimate);
       EXPECT_NEAR(estimate->height_m.mean, height, 0.05 * height);
       EXPECT_NEAR(to_degrees(estimate->tilt.mean), tilt_deg, 2.5);
       expect_inside(estimate->height_m, height, 1.5);
       expect_inside(estimate->tilt, to_radians(tilt_deg), 1.5);
-      expect_inside(estimate->focal_px, 650, 1.5);
+      expect_inside(estimate->focal_px, 540, 1.5);
       // The camera is what is said of it, and sees the same.
       EXPECT_NEAR(estimate->camera.centre_in_world().y(), estimate->height_m.mean, 1e-9);
       EXPECT_NEAR(estimate->camera.fx, estimate->focal_px.mean, 1e-9);
@@ -63,29 +64,56 @@ TEST(EstimateCamera, FindsHeightAndTilt) {
 
 TEST(EstimateCamera, HeightGrowsWithTheBody) {
   const auto extents = walk(camera_at(650, 1.2, 3), 1, -2);
-  const auto small = estimate_camera(extents, 640, 480, kBodyHeight);
-  const auto large = estimate_camera(extents, 640, 480, 1.1 * kBodyHeight);
+  const auto small = estimate_camera(extents, 640, 480, kBodyHeight, kUsual);
+  const auto large = estimate_camera(extents, 640, 480, 1.1 * kBodyHeight, kUsual);
   EXPECT_NEAR(large->height_m.mean / small->height_m.mean, 1.1, 0.02);
   EXPECT_EQ(large->body_height_m, 1.1 * kBodyHeight);
 }
 
 TEST(EstimateCamera, SaysHowLittleOneDepthTells) {
-  const PinholeCamera truth = camera_at(900, 1.2, 8);
-  const auto deep = estimate_camera(walk(truth, 1, -2), 640, 480, kBodyHeight);
-  const auto flat = estimate_camera(walk(truth, 0, 0), 640, 480, kBodyHeight);
+  const PinholeCamera truth = camera_at(560, 1.2, 8);
+  const auto deep = estimate_camera(walk(truth, 1, -2), 640, 480, kBodyHeight, kUsual);
+  const auto flat = estimate_camera(walk(truth, 0, 0), 640, 480, kBodyHeight, kUsual);
   EXPECT_GT(flat->height_m.deviation, 3 * deep->height_m.deviation);
   EXPECT_GT(flat->height_m.deviation, 0.2);
   expect_inside(flat->height_m, 1.2, 2);
   expect_inside(flat->tilt, to_radians(8), 2);
-  expect_inside(flat->focal_px, 900, 2);
+  expect_inside(flat->focal_px, 560, 2);
 }
 
 TEST(EstimateCamera, TiltAtThePicturesSidesTellsTheFocalLength) {
-  const double guess = default_camera(640, 480).fx;
-  const auto wide = estimate_camera(walk(camera_at(500, 2.2, 20), 1, -2), 640, 480, kBodyHeight);
-  const auto level = estimate_camera(walk(camera_at(500, 1.2, 0), 1, -2), 640, 480, kBodyHeight);
-  EXPECT_LT(wide->focal_px.mean, 0.8 * guess);
-  EXPECT_GT(level->focal_px.deviation, 0.3 * level->focal_px.mean);
+  for (const double focal_px : {330.0, 800.0}) {
+    const double off = std::log(focal_px / kUsual.focal_px);
+    const auto tilted = estimate_camera(walk(camera_at(focal_px, 2.2, 20), 1, -2), 640, 480, kBodyHeight, kUsual);
+    EXPECT_GT(std::log(tilted->focal_px.mean / kUsual.focal_px) / off, 0.4);  // the way from the prior to the truth
+    EXPECT_LT(tilted->focal_px.deviation, 0.15 * tilted->focal_px.mean);
+    expect_inside(tilted->focal_px, focal_px, 2);
+  }
+}
+
+TEST(EstimateCamera, FocalLengthThatNothingTellsStaysAtItsPrior) {
+  for (const double focal_px : {400.0, 560.0}) {
+    const auto level = estimate_camera(walk(camera_at(focal_px, 1.2, 0), 1, -2), 640, 480, kBodyHeight, kUsual);
+    EXPECT_NEAR(level->focal_px.mean, kUsual.focal_px, 0.06 * kUsual.focal_px);
+    EXPECT_GT(level->focal_px.deviation, 0.18 * level->focal_px.mean);
+    expect_inside(level->focal_px, focal_px, 2);
+  }
+}
+
+TEST(EstimateCamera, KnownFocalLengthIsKept) {
+  const PinholeCamera truth = camera_at(900, 1.2, 8);
+  const auto extents = walk(truth, 1, -2);
+  const auto known = estimate_camera(extents, 640, 480, kBodyHeight, {900, 0});
+  EXPECT_EQ(known->focal_px.mean, 900);
+  EXPECT_EQ(known->focal_px.deviation, 0);
+  EXPECT_EQ(known->camera.fx, 900);
+  EXPECT_NEAR(known->height_m.mean, 1.2, 0.03);
+  EXPECT_NEAR(to_degrees(known->tilt.mean), 8, 0.5);
+  EXPECT_LT(known->tilt.deviation, 0.7 * estimate_camera(extents, 640, 480, kBodyHeight, {900, 0.2})->tilt.deviation);
+  const auto wrong = estimate_camera(extents, 640, 480, kBodyHeight, {600, 0});
+  EXPECT_EQ(wrong->focal_px.mean, 600);
+  // What the picture tells is the horizon: it stays where it is.
+  EXPECT_NEAR(600 * std::tan(wrong->tilt.mean), 900 * std::tan(to_radians(8)), 12);
 }
 
 TEST(EstimateCamera, CrouchingForAWhileDoesNotRuinIt) {
@@ -95,7 +123,7 @@ TEST(EstimateCamera, CrouchingForAWhileDoesNotRuinIt) {
     extents[i].head.y() += 0.4 * extents[i].height();
     extents[i].slenderness = 2;
   }
-  const auto estimate = estimate_camera(extents, 640, 480, kBodyHeight);
+  const auto estimate = estimate_camera(extents, 640, 480, kBodyHeight, kUsual);
   EXPECT_NEAR(estimate->height_m.mean, 1.4, 0.1);
   EXPECT_NEAR(to_degrees(estimate->tilt.mean), 5, 2.5);
 }
@@ -103,8 +131,8 @@ TEST(EstimateCamera, CrouchingForAWhileDoesNotRuinIt) {
 TEST(EstimateCamera, NeedsSomeFrames) {
   auto extents = walk(camera_at(700, 1.4, 5), 1, -2);
   extents.resize(kFewestExtents - 1);
-  EXPECT_FALSE(estimate_camera(extents, 640, 480, kBodyHeight));
-  EXPECT_THROW((void)estimate_camera(extents, 640, 480, 0), std::invalid_argument);
+  EXPECT_FALSE(estimate_camera(extents, 640, 480, kBodyHeight, kUsual));
+  EXPECT_THROW((void)estimate_camera(extents, 640, 480, 0, kUsual), std::invalid_argument);
 }
 
 }  // namespace

@@ -16,9 +16,9 @@ namespace silpose {
 
 struct PinholeCamera {
   std::string name = "camera";
-  int width = 0, height = 0;                 // pixels
-  double fx = 0, fy = 0, cx = 0, cy = 0;     // pixels; cx, cy with the centre of the top-left pixel at 0.5
-  std::array<double, 5> distortion{};        // k1 k2 p1 p2 k3
+  int width = 0, height = 0;              // pixels
+  double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels; cx, cy with the centre of the top-left pixel at 0.5
+  std::array<double, 5> distortion{};     // k1 k2 p1 p2 k3
   Rigid3 cam_from_world;
 
   // Points nearer to the camera plane than this, or behind it, are not seen. Metres.
@@ -46,7 +46,7 @@ struct PinholeCamera {
 };
 
 // A level camera 1.5 m above the floor y = 0, at (0, 1.5, distance), looking along -Z at a subject who faces it;
-// focal length 1.2 x the larger side. What is assumed where no camera file is given.
+// focal length 1.2 x the larger side. A plain viewpoint; users' cameras: calibrate/focal_prior.h.
 PinholeCamera default_camera(int width, int height, double distance = 5.5);
 
 // A camera at `eye` that looks at `target`, +Y up in the picture. Metres; focal length in pixels.

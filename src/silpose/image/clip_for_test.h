@@ -9,6 +9,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "silpose/image/ffmpeg.h"
@@ -29,6 +30,7 @@ struct ClipForTest {
   AVColorTransferCharacteristic transfer = AVCOL_TRC_UNSPECIFIED;
   bool is_interlaced = false, has_sound = false, has_pictures = true;
   std::optional<std::array<int32_t, 9>> display_matrix;
+  std::vector<std::pair<std::string, std::string>> metadata;  // of the file, as QuickTime's keys
 };
 
 inline int must(int code) {
@@ -91,7 +93,11 @@ inline void write_clip_for_test(const std::filesystem::path& path, std::span<con
     });
   }
   must(avio_open(&output->pb, ffmpeg_path(path.string()).c_str(), AVIO_FLAG_WRITE));
-  must(avformat_write_header(output, nullptr));
+  for (const auto& [key, value] : clip.metadata) av_dict_set(&output->metadata, key.c_str(), value.c_str(), 0);
+  AVDictionary* muxing = nullptr;
+  if (!clip.metadata.empty()) av_dict_set(&muxing, "movflags", "use_metadata_tags", 0);
+  must(avformat_write_header(output, &muxing));
+  av_dict_free(&muxing);
 
   const PacketHandle packet(av_packet_alloc());
   const auto encode = [&](const std::pair<CodecHandle, AVStream*>& to, const AVFrame* frame) {

@@ -61,6 +61,14 @@ class PictureSource : public FrameSource {
 
   [[nodiscard]] std::span<const int64_t> numbers() const override { return numbers_; }
   [[nodiscard]] int64_t num_frames_hint() const override { return static_cast<int64_t>(paths_.size()); }
+  // Of the first picture. FFmpeg's decoder of JPEG reads EXIF; OpenCV's keeps it to itself.
+  [[nodiscard]] std::optional<double> focal_mm35() const override {
+    const fs::path extension = paths_.front().extension();
+    if (extension != ".jpg" && extension != ".jpeg" && extension != ".JPG" && extension != ".JPEG") return {};
+    const auto picture = open_video_file(paths_.front().string());
+    if (!picture || !(*picture)->next()) return {};
+    return (*picture)->focal_mm35();
+  }
   Result<std::optional<Picture>> next() override {
     if (next_ == paths_.size()) return std::optional<Picture>();
     Result<ByteImage> image = read_colour_image(paths_[next_++]);

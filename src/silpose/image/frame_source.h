@@ -29,6 +29,8 @@ class FrameSource {
   [[nodiscard]] virtual bool has_times() const { return false; }
   [[nodiscard]] virtual int64_t num_frames_hint() const { return 0; }  // 0: unknown
   [[nodiscard]] virtual bool is_live() const { return false; }
+  // The lens's focal length as the 35 mm equivalent by the input's metadata, mm; nothing where they do not say.
+  [[nodiscard]] virtual std::optional<double> focal_mm35() const { return {}; }
   // Of its pictures, growing; empty: they are counted from 0.
   [[nodiscard]] virtual std::span<const int64_t> numbers() const { return {}; }
 

@@ -123,6 +123,9 @@ int64_t Video::own_index(int camera) const {
   return numbers.empty() ? ordinal : numbers[static_cast<size_t>(ordinal)];
 }
 const std::string& Video::name() const { return impl_->name; }
+std::optional<double> Video::focal_mm35(int camera) const {
+  return impl_->cameras.at(static_cast<size_t>(camera)).source->focal_mm35();
+}
 bool Video::truncated() const { return impl_->truncated; }
 
 std::vector<std::string> Video::warnings() const {

@@ -43,6 +43,8 @@ class Video {
   // one of them dropped a picture.
   [[nodiscard]] int64_t own_index(int camera) const;
   [[nodiscard]] const std::string& name() const;
+  // The focal length as the 35 mm equivalent, mm: what a video's or the first JPEG's metadata (QuickTime, EXIF) say.
+  [[nodiscard]] std::optional<double> focal_mm35(int camera = 0) const;
 
   // The next frame, nothing at the end. Errors: an image whose size differs from the first one's; a stream that breaks
   // off before the frames its container promises is the end, and truncated() says so.

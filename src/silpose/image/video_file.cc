@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <fstream>
+#include <string_view>
 #include <utility>
 
 #include "silpose/image/ffmpeg.h"
@@ -27,6 +29,23 @@ bool starts_as_iso_media(const std::string& path) {
 
 double ratio_of(AVRational ratio) { return ratio.num > 0 && ratio.den > 0 ? av_q2d(ratio) : 0; }
 
+// The 35 mm equivalent among metadata: of QuickTime as iPhones write it, or of EXIF (0xA405) as FFmpeg names it.
+std::optional<double> focal_mm35_of(const AVDictionary* metadata) {
+  constexpr double kLeast_mm = 5, kMost_mm = 2000;  // 0 stands for unknown in EXIF; lenses lie far within
+  const AVDictionaryEntry* entry = nullptr;
+  while ((entry = av_dict_get(metadata, "", entry, AV_DICT_IGNORE_SUFFIX)) != nullptr) {
+    const std::string_view key(entry->key), text(entry->value);
+    if (!key.starts_with("com.apple.quicktime.camera.focal_length.35mm_equivalent") && key != "FocalLengthIn35mmFilm") {
+      continue;
+    }
+    const std::string_view number = text.substr(std::min(text.find_first_not_of(' '), text.size()));
+    double mm = 0;
+    const auto [end, failure] = std::from_chars(number.data(), number.data() + number.size(), mm);
+    if (failure == std::errc() && mm >= kLeast_mm && mm <= kMost_mm) return mm;
+  }
+  return std::nullopt;
+}
+
 class VideoFile : public FrameSource {
  public:
   explicit VideoFile(std::string name)
@@ -47,6 +66,7 @@ class VideoFile : public FrameSource {
     const int64_t by_duration = std::llround(stream_duration_s() * fps_);
     return by_duration > 0 ? std::min(stream_->nb_frames, by_duration) : stream_->nb_frames;
   }
+  [[nodiscard]] std::optional<double> focal_mm35() const override { return focal_mm35_; }
   [[nodiscard]] bool broke_off() const override { return broke_off_; }
   [[nodiscard]] std::vector<std::string> warnings() const override {
     std::vector<std::string> all = warnings_;
@@ -191,6 +211,11 @@ class VideoFile : public FrameSource {
       warnings_.push_back(fmt::format("{}: carries no times; {:.3f} frames a second, as its coding says", name_, fps_));
     }
 
+    focal_mm35_.reset();
+    for (const AVDictionary* metadata : {stream_->metadata, input_->metadata, frame.metadata}) {
+      if (!focal_mm35_) focal_mm35_ = focal_mm35_of(metadata);
+    }
+
     turn_ = {};
     if (const uint8_t* bytes = side_data_of(*stream_, AV_PKT_DATA_DISPLAYMATRIX)) {
       take_turn(bytes);
@@ -258,6 +283,7 @@ class VideoFile : public FrameSource {
   double end_s_ = 0;      // of what was read, in the file's time
   bool is_even_ = false;  // at that rate
   Turn turn_;
+  std::optional<double> focal_mm35_;
   std::optional<int64_t> first_pts_;
   int64_t num_given_ = 0, num_undecoded_ = 0;
   bool all_sent_ = false, broke_off_ = false, last_is_partial_ = false, told_interlaced_ = false;

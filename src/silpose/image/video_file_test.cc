@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "silpose/image/clip_for_test.h"
+#include "silpose/image/image_file.h"
 #include "silpose/image/video.h"
 
 namespace silpose {
@@ -272,6 +273,40 @@ TEST_F(VideoFileTest, FullDiskIsAnError) {
   }
   const std::string message = writer ? written.error().message : writer.error().message;
   EXPECT_THAT(message, HasSubstr("full.mp4: not writable ("));
+}
+
+TEST_F(VideoFileTest, MetadataTellTheFocalLength) {
+  const char* const key = "com.apple.quicktime.camera.focal_length.35mm_equivalent";
+  const std::pair<const char*, std::optional<double>> cases[] = {
+      {"28", 28}, {"25.5", 25.5}, {"0", std::nullopt}, {"nan", std::nullopt}, {"wide", std::nullopt}};
+  for (const auto& [value, expected] : cases) {
+    const std::string path = write("phone.mov", {.metadata = {{key, value}}});
+    EXPECT_EQ(open_video(path).value().focal_mm35(), expected) << value;
+  }
+  EXPECT_EQ(open_video(write("plain.mov", {})).value().focal_mm35(), std::nullopt);
+}
+
+TEST_F(VideoFileTest, ExifOfTheFirstJpegTellsTheFocalLength) {
+  // Big-endian TIFF: IFD0 at 8 with the pointer to Exif's IFD at 26, which holds 0xA405, a SHORT.
+  const auto exif = [](char mm) {
+    return std::string("Exif\0\0MM\0\x2a\0\0\0\x08", 14) +
+           std::string("\0\x01\x87\x69\0\x04\0\0\0\x01\0\0\0\x1a\0\0\0\0", 18) +
+           std::string("\0\x01\xa4\x05\0\x03\0\0\0\x01\0", 11) + mm + std::string("\0\0\0\0\0\0", 6);
+  };
+  const std::string jpeg = jpeg_bytes(corners(64, 48), 90);
+  const auto write_jpeg = [&](const std::string& name, const std::string& segment) {
+    std::ofstream stream(folder_ / name, std::ios::binary);
+    stream << jpeg.substr(0, 2);
+    if (!segment.empty()) stream << "\xff\xe1" << '\0' << static_cast<char>(segment.size() + 2) << segment;
+    stream << jpeg.substr(2);
+  };
+  write_jpeg("a.jpg", exif(27));
+  write_jpeg("b.jpg", {});
+  EXPECT_EQ(open_video(folder_.string()).value().focal_mm35(), 27);
+  write_jpeg("a.jpg", exif(0));
+  EXPECT_EQ(open_video(folder_.string()).value().focal_mm35(), std::nullopt);
+  write_jpeg("a.jpg", {});
+  EXPECT_EQ(open_video(folder_.string()).value().focal_mm35(), std::nullopt);
 }
 
 }  // namespace

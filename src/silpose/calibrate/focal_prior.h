@@ -1,0 +1,28 @@
+// FocalPrior: what is known of a camera's focal length before its clip is looked at: what a user or a file's metadata
+// say, or what cameras in use are like. All cameras are taken to have square pixels and their centre in the middle.
+// Based on: the pinhole camera; the 35 mm equivalent is taken by the diagonal, as is usual.
+// Errors: every function throws std::invalid_argument for sizes, lengths and angles that are not positive.
+// Threads: functions without state.
+#pragma once
+
+namespace silpose {
+
+struct FocalPrior {
+  double focal_px = 0;
+  double deviation = 0;  // standard, of the logarithm: about relative; 0: known, and not estimated
+};
+
+// Of a clip that says nothing of its camera: a phone or a webcam. [width, height]: pixels.
+[[nodiscard]] FocalPrior usual_focal_length(int width, int height);
+
+// The focal length in pixels of a picture of that size with the field of view of a lens of `mm` before film of 36 x 24
+// mm: equal angles over the diagonals.
+[[nodiscard]] double focal_px_of_mm35(double mm, int width, int height);
+
+// By the field of view along the picture's larger side, radians below pi.
+[[nodiscard]] double focal_px_of_view(double angle, int width, int height);
+
+// By the 35 mm equivalent that a file's metadata tell.
+[[nodiscard]] FocalPrior focal_length_of_metadata(double mm35, int width, int height);
+
+}  // namespace silpose
