@@ -52,18 +52,22 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
   tracker.body = *body;
   tracker.cameras = cameras->cameras;
   tracker.preset = "accurate";
+  tracker.size_deviation = size_deviation_of(options.model);
   tracker.seed = common.seed;
   tracker.landmarks = source->finds_landmarks();
+  if (source->finds_landmarks()) tracker.evidence = EvidenceKind::kBoth;
   const std::optional<BodyFit> fit = fit_subject(tracker, *clip, poses_as_given(tracker, *clip, console), console);
   if (Console::interrupted()) return error("interrupted: nothing is written");
-  if (!fit) return error("{}: no body fitted: {}", source->video().name(), why_not_fitted(cameras->cameras.size()));
+  if (!fit) return error("{}: no body fitted: {}", source->video().name(), why_not_fitted(tracker));
 
   std::vector<std::string> warnings = cameras->warnings;
   const std::vector<std::string> of_input = source->warnings();
   warnings.insert(warnings.end(), of_input.begin(), of_input.end());
-  if (fit->size) {
+  if (fit->lengths.empty()) {
     warnings.emplace_back(
-        "one camera tells the size of a subject on the floor, and neither proportions nor girths; two or more do");
+        "one camera without keypoints tells the size of a subject on the floor, and neither proportions nor girths; "
+        "two "
+        "or more do, or --segmenter learned");
   }
   for (const std::string& warning : warnings) console.warning(warning);
   Result<Outcome> outcome = write_model(*fit->body, options.out);
@@ -79,7 +83,8 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
 Command add_model_fit(CLI::App& model, const CommonOptions& common) {
   const auto options = std::make_shared<FitOptions>();
   CLI::App* const fit = model.add_subcommand(
-      "fit", "A subject's own body: bones and girths by several cameras, the size by one whose floor is known");
+      "fit",
+      "A subject's own body: bones and girths by several cameras, or by one and keypoints; the size by a known floor");
   add_input_options(*fit, options->input);
   add_camera_options(*fit, options->camera);
   add_model_option(*fit, options->model);

@@ -18,12 +18,12 @@ namespace silpose::app {
 std::vector<std::vector<double>> poses_as_given(const TrackerOptions& tracker, std::span<const ClipInstant> clip,
                                                 Console& console, const ClipResume& resume = {});
 
-// From these poses fits the body: bones and girths with several cameras, the size with one, by the floor. Nothing where
-// the clip does not tell (why_not_fitted), or when interrupted.
+// From these poses fits the body (body_fit.h). Nothing where the clip does not tell (why_not_fitted), or when
+// interrupted.
 std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<const ClipInstant> clip,
                                    std::span<const std::vector<double>> poses, Console& console);
 
-std::string why_not_fitted(size_t num_cameras);
+std::string why_not_fitted(const TrackerOptions& tracker);
 
 // {"lengths_m": {"right_shin_length": {mean, std}, ...}, "girths": {...}, "size": {...}}: what was fitted of these.
 nlohmann::ordered_json facts_of(const BodyFit& fit);

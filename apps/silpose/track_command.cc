@@ -21,7 +21,7 @@
 namespace silpose::app {
 namespace {
 
-Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, const CommonOptions& common,
+Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const CommonOptions& common,
                               Console& console) {
   Result<ResultDirectory> directory = ResultDirectory::create(options.out, options.resume);
   if (!directory) return directory.failure();
@@ -34,6 +34,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   if (!cameras) return cameras.failure();
   Result<ObservationSource> source = ObservationSource::open(options.input, console);
   if (!source) return source.failure();
+  options.fit_body = fits_body(options, source->finds_landmarks());
   if (estimates_camera(options)) {
     const Result<void> estimated = estimate_camera_of(*source, (*body)->height_m, *cameras, console);
     if (!estimated) return estimated.failure();
@@ -71,7 +72,8 @@ Result<Outcome> track_clip_of(const CLI::App& app, const TrackOptions& options, 
   const std::vector<std::string> of_input = source->warnings();
   warnings.insert(warnings.end(), of_input.begin(), of_input.end());
   warnings.insert(warnings.end(), tracked->warnings.begin(), tracked->warnings.end());
-  if (cameras->cameras.size() == 1 && !tracked->body_fit && tracked->used.size_deviation > 0) {
+  const bool knows_size = tracked->body_fit && tracked->body_fit->size;
+  if (cameras->cameras.size() == 1 && !knows_size && tracked->used.size_deviation > 0) {
     warnings.push_back(fmt::format(
         "--model {}: {:.2f} m is assumed, for no height is given; nine in ten people are within {:.0f} % of "
         "it, and distances as far off as that",

@@ -27,9 +27,8 @@ void add_fitted_options(CLI::App& app, TrackOptions& options) {
       ->group(kFitted);
   app.add_flag_function(
          "--fit-body,!--no-fit-body", [&options](int64_t count) { options.fit_body = count > 0; },
-         "Fit the body to the subject first: bones and girths with several cameras, the size with one and its floor; "
-         "needs "
-         "--camera and --smooth (accurate with several cameras: on)")
+         "Of a recorded clip: track it, fit the body to the subject, track it again. Bones and girths with several "
+         "cameras, or with one and --segmenter learned; with one and --floor the size (accurate: on where bones are)")
       ->group(kFitted);
   app.add_flag_function(
          "--floor,!--no-floor", [&tracker](int64_t count) { tracker.floor = count > 0; },
@@ -146,24 +145,32 @@ void check_together(const TrackOptions& options) {
     throw UsageError(fmt::format("{}: needs --particles, --layers or --preset thesis", *name));
   }
   if (options.fit_body.value_or(false)) {
-    if (options.each) throw UsageError("--fit-body: needs several cameras; with --each every clip has one");
-    if (!*tracker.resolved().smooth) throw UsageError("--fit-body: needs --smooth");
-    if (!options.camera.has_file()) {
-      throw UsageError("--fit-body: needs --camera; without a known floor one camera tells nothing of a body's size");
-    }
+    if (options.evidence == "landmarks") throw UsageError("--fit-body: not together with --evidence landmarks");
   }
   for (const std::string& video : options.input.videos) {
     if (video.starts_with("camera:") && *tracker.resolved().smooth) {
       throw UsageError(fmt::format("--smooth: {} is live, smoothing needs a recorded clip{}", video,
                                    tracker.smooth ? "" : " (--preset accurate smooths; --no-smooth)"));
     }
+    if (video.starts_with("camera:") && options.fit_body.value_or(false)) {
+      throw UsageError(fmt::format("--fit-body: {} is live, a body is fitted to a recorded clip", video));
+    }
   }
 }
 
-bool fits_body(const TrackOptions& options) {
+bool fits_body(const TrackOptions& options, bool finds_landmarks) {
+  const bool one_camera = options.each || options.input.videos.size() == 1;
+  const bool tells_bones =
+      options.evidence != "landmarks" && (!one_camera || (options.evidence == "both" && finds_landmarks));
+  if (options.fit_body.value_or(false) && !tells_bones && !options.camera.has_file()) {
+    throw UsageError(
+        "--fit-body: one camera tells a body's size by a floor, which --camera gives, and its bones by keypoints, "
+        "which "
+        "--segmenter learned finds");
+  }
   const TrackerOptions resolved = options.tracker.resolved();
   return options.fit_body.value_or(options.tracker.preset == "accurate" && resolved.num_hypotheses &&
-                                   *resolved.smooth && !options.each && options.input.videos.size() > 1);
+                                   *resolved.smooth && tells_bones);
 }
 
 bool estimates_camera(const TrackOptions& options) {
@@ -224,7 +231,7 @@ std::map<std::string, std::string> chosen_options(const TrackOptions& options, c
   keep("hypotheses", used.num_hypotheses);
   if (used.num_hypotheses) {
     keep("smooth", used.smooth);
-    keep("fit-body", std::optional(fits_body(options)));
+    keep("fit-body", options.fit_body);
     keep("floor", used.floor);
     return chosen;
   }

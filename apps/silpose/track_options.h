@@ -33,8 +33,9 @@ void add_track_options(CLI::App& app, TrackOptions& options);
 // Throws UsageError for options that do not go together, before anything is read.
 void check_together(const TrackOptions& options);
 
-// Whether the subject's bone lengths are fitted: where asked for, and by `accurate` with several cameras.
-bool fits_body(const TrackOptions& options);
+// Whether the body is fitted to the subject: where asked for, and by `accurate` where bones can be told. Throws
+// UsageError where it is asked for and nothing can be told.
+bool fits_body(const TrackOptions& options, bool finds_landmarks);
 
 // Whether the camera is estimated: of one recorded clip without a calibration file.
 bool estimates_camera(const TrackOptions& options);

@@ -21,9 +21,6 @@ namespace {
 // A checkpoint is written this often, less often where writing takes longer than a fiftieth of that.
 constexpr double kLeastInterval_s = 2, kIntervalOverWriting = 50;
 
-// What a size that was told by the floor may be off, of itself: as far as rendered subjects were (docs/results.md).
-constexpr double kOfCameraFile = 0.02;
-
 class TrackRun {
  public:
   TrackRun(const TrackOptions& options, TrackerOptions tracker, ObservationSource& source, TrackWriter& writer,
@@ -40,12 +37,13 @@ class TrackRun {
 
   Result<Tracked> run() {
     tracked_.used = tracker_options_.resolved();
-    if (*tracked_.used.smooth) writer_.keep_confidence();
+    const bool as_a_whole = *tracked_.used.smooth || *options_.fit_body;
+    if (as_a_whole) writer_.keep_confidence();
     if (resume_.earlier) {
       if (Result<void> ready = go_on(std::move(*resume_.earlier)); !ready) return ready.failure();
     }
     now_.seconds.background += source_.learning_s();
-    const Result<void> done = *tracked_.used.smooth ? track_whole() : track_online();
+    const Result<void> done = as_a_whole ? track_whole() : track_online();
     if (!done) return done.failure();
     if (now_.num_frames == 0) {
       if (Console::interrupted()) return error("interrupted before the first frame");
@@ -226,7 +224,7 @@ class TrackRun {
     }
     if (clip_.empty()) return {};
     if (Result<void> saved = save(now_.tracker); !saved || Console::interrupted()) return saved;
-    if (fits_body(options_)) {
+    if (*options_.fit_body) {
       if (Result<void> fitted = fit_body_to_clip(); !fitted || Console::interrupted()) return fitted;
     }
     if (now_.reports.empty()) {
@@ -273,11 +271,11 @@ class TrackRun {
     if (Console::interrupted()) return {};
     now_.seconds.smooth += smoothing_.restart();
     if (!fit) {
-      tracked_.warnings.push_back("the body is as given: " + why_not_fitted(tracker_options_.cameras.size()));
+      tracked_.warnings.push_back("the body is as given: " + why_not_fitted(tracker_options_));
       return {};
     }
     tracker_options_.body = fit->body;
-    tracker_options_.size_deviation = fit->size ? std::max(fit->size->deviation, kOfCameraFile) : 0;
+    tracker_options_.size_deviation = fit->size_deviation;
     tracked_.used.size_deviation = tracker_options_.size_deviation;
     writer_.set_fitted_body(fit->body);
     tracked_.body_fit = std::move(fit);

@@ -31,6 +31,6 @@ grep -q 'camera_estimate' assumed.json && fail "an assumed camera is called an e
 "$silpose" "${track[@]}" --end 0.1 --out short >short.json 2>warnings.txt || fail "a clip that is too short: exit $?"
 grep -q 'the camera was not estimated: too few of 1 frames' warnings.txt ||
   fail "nothing says why the camera was not estimated"
-expect_failure 2 '--fit-body: needs --camera' track truth/masks --camera assumed --preset accurate --fit-body --out no
+expect_failure 2 'fit-body: .*--camera' track truth/masks --camera assumed --preset accurate --fit-body --out no
 expect_failure 1 'assumed: ' synth --camera assumed --out no
 finish

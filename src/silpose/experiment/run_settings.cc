@@ -24,6 +24,10 @@ std::string settings_text(const RunSettings& settings) {
   json["mask_noise"] = settings.mask_noise;
   json["mask_iou"] = settings.mask_iou;
   if (settings.faults_known) json["faults_known"] = true;  // results from before there was a choice stay good
+  if (settings.drawn_person) json["drawn_person"] = true;
+  if (settings.keypoints) json["keypoints"] = true;
+  if (settings.keypoints || settings.is_recorded()) json["evidence"] = settings.evidence;
+  if (settings.fit_body) json["fit_body"] = true;
   if (settings.is_recorded()) {
     json["clip"] = settings.clip;
     json["camera"] = settings.camera;
@@ -32,7 +36,6 @@ std::string settings_text(const RunSettings& settings) {
     json["truth_above"] = optional(settings.truth_above);
     json["segmenter"] = settings.segmenter;
     json["background"] = settings.background;
-    json["evidence"] = settings.evidence;
     json["floor"] = optional(settings.floor);
   }
   json["preset"] = settings.preset;

@@ -12,7 +12,8 @@ namespace silpose {
 
 struct RunSettings {
   // The sequence.
-  std::string model = "human";    // the body that is seen
+  std::string model = "human";  // the body that is seen
+  bool drawn_person = false;    // somebody of its stature with proportions of their own (synth/drawn_person.h) is seen
   std::string motion = "static";  // synth/motion_source.h; one with a file extension lies under the data folder
   int frames = 0;                 // 0: all of a file, 80 of any other motion
   double fps = 30;
@@ -26,6 +27,7 @@ struct RunSettings {
   double mask_iou = 0.9;            // of edge: with the true masks, on average
   bool faults_known = false;        // pixels that are wrong, and those beside them, are marked as unsure: the most that
                                     // a segmenter's confidence could give
+  bool keypoints = false;           // beside each mask those that a network might see (synth/simulated_keypoints.h)
   // A recorded clip in place of both. Paths are relative to the data folder.
   std::vector<std::string> clip;          // one video a camera, in step; empty: the run is on a rendered sequence
   std::string camera;                     // calibration: .toml, or .json as docs/formats.md says
@@ -34,10 +36,11 @@ struct RunSettings {
   std::optional<double> truth_above;      // m: of surfaces, only what lies above this y of the world counts
   std::string segmenter = "learned";      // learned, background, or masks: the videos are masks
   std::vector<std::string> background;    // for `background`: auto, or a picture of the empty scene, one a video
-  std::string evidence = "both";          // silhouette, landmarks, both; network: no tracker runs, the network's own
-                                          // keypoints are scored
   std::optional<bool> floor;              // the world's y = 0 is the floor; unset: as the preset has it
   // The tracker.
+  std::string evidence = "both";  // where there are keypoints: silhouette, landmarks, both; of a clip also network: no
+                                  // tracker runs, the network's own keypoints are scored
+  bool fit_body = false;          // track/body_fit.h: the clip is tracked, the body fitted, and the clip tracked again
   std::string preset = "default";
   std::optional<bool> smooth;
   std::optional<int> hypotheses;

@@ -14,7 +14,7 @@
 #include "silpose/evaluate/pose_error.h"
 #include "silpose/evaluate/uncertainty.h"
 #include "silpose/experiment/score_parts.h"
-#include "silpose/likelihood/keypoint_term.h"
+#include "silpose/shape/keypoint_axes.h"
 
 namespace silpose {
 namespace {

@@ -49,6 +49,9 @@ const std::map<std::string, Setter, std::less<>>& setters() {
        }},
       {"mask_iou", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.05, 0.999), run.mask_iou); }},
       {"faults_known", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.faults_known); }},
+      {"drawn_person", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.drawn_person); }},
+      {"keypoints", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.keypoints); }},
+      {"fit_body", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.fit_body); }},
       {"clip", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.clip); }},
       {"camera", [](const TomlEntry& e, RunSettings& run) { return take(text_of(e), run.camera); }},
       {"camera_names", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.camera_names); }},
@@ -86,11 +89,12 @@ const std::map<std::string, Setter, std::less<>>& setters() {
 }
 
 // Settings that only runs on a recorded clip have, and those that only runs on a rendered sequence have.
-constexpr std::array<std::string_view, 9> kOfClips = {"clip",       "camera",    "camera_names", "truth", "truth_above",
-                                                      "background", "segmenter", "evidence",     "floor"};
-constexpr std::array<std::string_view, 16> kOfSequences = {
-    "motion",   "fps",        "amplitude_deg", "period_s", "range",        "views",       "view",        "size",
-    "focal_px", "distance_m", "mask_noise",    "mask_iou", "faults_known", "body_height", "body_weight", "start"};
+constexpr std::array<std::string_view, 8> kOfClips = {"clip",        "camera",     "camera_names", "truth",
+                                                      "truth_above", "background", "segmenter",    "floor"};
+constexpr std::array<std::string_view, 18> kOfSequences = {
+    "motion",       "fps",         "amplitude_deg", "period_s",   "range",        "views",
+    "view",         "size",        "focal_px",      "distance_m", "mask_noise",   "mask_iou",
+    "faults_known", "body_height", "body_weight",   "start",      "drawn_person", "keypoints"};
 
 }  // namespace
 
@@ -101,7 +105,14 @@ Result<void> check_settings(const GivenSettings& given, const RunSettings& run) 
       return error("{}: not together with clip: it is of rendered sequences", where);
     }
     if (!is_recorded && std::ranges::count(kOfClips, key) > 0) return error("{}: needs clip, a list of videos", where);
+    if (!is_recorded && key == "evidence" && !run.keypoints) {
+      return error("{}: needs clip, a list of videos, or keypoints = true", where);
+    }
+    if (key == "fit_body" && run.fit_body && run.evidence == "landmarks") {
+      return error("{}: needs silhouettes; not with evidence = \"landmarks\"", where);
+    }
   }
+  if (!is_recorded && run.evidence == "network") return error("{}: network is of recorded clips", given.at("evidence"));
   if (!is_recorded) return {};
   const std::string& where = given.at("clip");
   const auto is_one_a_video = [&](const std::vector<std::string>& values) {

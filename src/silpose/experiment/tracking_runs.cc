@@ -10,6 +10,9 @@
 #include "silpose/experiment/score_clip.h"
 #include "silpose/experiment/score_run.h"
 #include "silpose/synth/degraded_mask.h"
+#include "silpose/synth/drawn_person.h"
+#include "silpose/synth/simulated_keypoints.h"
+#include "silpose/track/body_fit.h"
 
 namespace silpose {
 namespace {
@@ -23,11 +26,11 @@ Result<void> choose_tracker(const RunSettings& settings, TrackerOptions& options
   options.num_hypotheses = settings.hypotheses;
   options.smooth = settings.smooth;
   options.floor = settings.floor;
-  if (settings.is_recorded()) {
+  if (settings.is_recorded() || settings.keypoints) {
     options.evidence = settings.evidence == "silhouette"  ? EvidenceKind::kSilhouette
                        : settings.evidence == "landmarks" ? EvidenceKind::kKeypoints
                                                           : EvidenceKind::kBoth;
-    options.landmarks = settings.segmenter == "learned";  // as `silpose track` starts
+    options.landmarks = settings.keypoints || settings.segmenter == "learned";  // as `silpose track` starts
   }
   try {
     options.check();
@@ -146,20 +149,38 @@ ByteImage confidence_of_faults(const Mask& mask, const Mask& truth) {
   return confidence;
 }
 
-// Tracks the instants; nothing when `go_on` says false. Scores of the tracker's times are added to those that `score`
-// makes of its reports.
+// Makes the body the subject's, as far as the instants tell it.
+void fit_subject(TrackerOptions& options, std::span<const ClipInstant> instants, const ClipProgress& progress) {
+  std::vector<std::vector<double>> poses;
+  for (const StepReport& report : track_clip(options_before_fit(options), instants, progress)) {
+    poses.push_back(report.pose);
+  }
+  if (poses.size() != instants.size()) return;  // stopped
+  const std::optional<BodyFit> fit = fit_body(options.body, options.cameras, instants, poses, body_fit_options(options),
+                                              [&] { return progress(0, instants.size()); });
+  if (!fit) return;
+  options.body = fit->body;
+  options.size_deviation = fit->size_deviation;
+}
+
+// Tracks the instants, with a body fitted to the subject where that is asked for; nothing when `go_on` says false.
+// Scores of the tracker's times, without those of the fit, are added to those that `score` makes of its reports.
 Result<std::optional<RunResult>> track_and_score(
-    const TrackerOptions& options, std::span<const ClipInstant> instants, const std::function<bool()>& go_on,
-    const std::function<Result<RunResult>(std::span<const StepReport>)>& score) {
+    TrackerOptions options, bool fit_body_first, std::span<const ClipInstant> instants,
+    const std::function<bool()>& go_on,
+    const std::function<Result<RunResult>(const BodyModel&, std::span<const StepReport>)>& score) {
   bool stopped = false;
-  const Stopwatch tracking;
-  const std::vector<StepReport> reports = track_clip(options, instants, [&](size_t, size_t) {
+  const auto progress = [&](size_t, size_t) {
     stopped = stopped || !go_on();
     return !stopped;
-  });
+  };
+  if (fit_body_first) fit_subject(options, instants, progress);
+  if (stopped) return std::optional<RunResult>();
+  const Stopwatch tracking;
+  const std::vector<StepReport> reports = track_clip(options, instants, progress);
   const double tracking_s = tracking.seconds();
   if (stopped) return std::optional<RunResult>();
-  Result<RunResult> result = score(reports);
+  Result<RunResult> result = score(*options.body, reports);
   if (!result) return result.failure();
   double start_s = 0;
   for (const StepReport& report : reports) start_s += report.seconds.start;
@@ -205,7 +226,10 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
   sequence_only.body_height = defaults.body_height;
   sequence_only.body_weight = defaults.body_weight;
   sequence_only.start = defaults.start;
-  const bool is_drawn = settings.motion == "static" || settings.motion == "random" || settings.mask_noise != "none";
+  sequence_only.evidence = defaults.evidence;
+  sequence_only.fit_body = defaults.fit_body;
+  const bool is_drawn = settings.motion == "static" || settings.motion == "random" || settings.mask_noise != "none" ||
+                        settings.drawn_person || settings.keypoints;
   const std::string key = fmt::format("{} {}", settings_text(sequence_only), is_drawn ? seed : 0);
   if (seen_ && seen_->key == key) return &*seen_;
 
@@ -214,7 +238,9 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
   if (!true_body) return true_body.failure();
   Seen seen;
   seen.key = key;
-  Result<SyntheticSequence> sequence = sequence_of(settings, seed, data_, *true_body, seen.residual_deg);
+  std::shared_ptr<const BodyModel> subject = *true_body;
+  if (settings.drawn_person) subject = std::make_shared<const BodyModel>(draw_person(*subject, seed));
+  Result<SyntheticSequence> sequence = sequence_of(settings, seed, data_, subject, seen.residual_deg);
   if (!sequence) return sequence.failure();
   seen.sequence = std::move(*sequence);
   seen.instants.resize(static_cast<size_t>(seen.sequence.num_frames()));
@@ -225,8 +251,15 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
   for (size_t c = 0; c < seen.sequence.cameras.size(); ++c) {
     Result<std::vector<Mask>> masks = masks_of(seen.sequence, static_cast<int>(c), settings, seed);
     if (!masks) return masks.failure();
+    std::optional<SimulatedKeypoints> network;
+    if (settings.keypoints) network.emplace(seen.sequence, static_cast<int>(c), seed);
     for (size_t t = 0; t < masks->size(); ++t) {
       Observation observation = observation_of(std::move((*masks)[t]));
+      if (network && !observation.trust.nothing_found) {
+        SimulatedKeypoints::Seen drawn = network->draw(static_cast<int>(t), observation.box);
+        observation.landmarks = std::move(drawn.landmarks);
+        observation.keypoints = std::move(drawn.keypoints);
+      }
       if (settings.faults_known && settings.mask_noise != "none") {
         const Mask truth = true_mask(seen.sequence, static_cast<int>(c), static_cast<int>(t));
         observation.confidence = confidence_of_faults(observation.mask, truth);
@@ -246,7 +279,9 @@ Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, 
   const auto seen = see(settings, seed);
   if (!seen) return seen.failure();
   const SyntheticSequence& sequence = (*seen)->sequence;
-  const auto tracker_body = body(model_beside(settings.model, *sequence.body, settings));
+  const auto given_body = body(settings.model);
+  if (!given_body) return given_body.failure();
+  const auto tracker_body = body(model_beside(settings.model, **given_body, settings));
   if (!tracker_body) return tracker_body.failure();
 
   TrackerOptions options;
@@ -257,9 +292,10 @@ Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, 
   const Result<void> chosen = choose_tracker(settings, options);
   if (!chosen) return chosen.failure();
   if (!go_on()) return std::optional<RunResult>();
-  auto result = track_and_score(options, (*seen)->instants, go_on, [&](std::span<const StepReport> reports) {
-    return score_run(sequence, **tracker_body, reports);
-  });
+  auto result = track_and_score(std::move(options), settings.fit_body, (*seen)->instants, go_on,
+                                [&](const BodyModel& tracked_body, std::span<const StepReport> reports) {
+                                  return score_run(sequence, tracked_body, reports);
+                                });
   if (!result || !result->has_value()) return result;
   RunResult& run = **result;
   run.scores["mask_iou"] = (*seen)->mask_iou;
@@ -306,9 +342,10 @@ Result<std::optional<RunResult>> TrackingRuns::run_on_clip(const RunSettings& se
   options.seed = seed;
   const Result<void> chosen = choose_tracker(settings, options);
   if (!chosen) return chosen.failure();
-  auto result = track_and_score(options, **instants, go_on, [&](std::span<const StepReport> reports) {
-    return score_clip(*truth, **tracker_body, *cameras, reports);
-  });
+  auto result = track_and_score(std::move(options), settings.fit_body, **instants, go_on,
+                                [&](const BodyModel& tracked_body, std::span<const StepReport> reports) {
+                                  return score_clip(*truth, tracked_body, *cameras, reports);
+                                });
   if (result && result->has_value()) (*result)->wall_s = all.seconds();
   return result;
 }

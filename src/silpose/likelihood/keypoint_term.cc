@@ -7,6 +7,7 @@
 #include <string>
 
 #include "silpose/body/point_motion.h"
+#include "silpose/shape/keypoint_axes.h"
 
 namespace silpose {
 namespace {
@@ -20,23 +21,6 @@ constexpr double kLeastVisible = 0.5;  // [guess]
 constexpr double kBehind = 1e4;  // squared deviations of what is behind the camera: more than anything in the image
 constexpr double kShortest_m = 0.05;  // [guess] a segment that the network takes for shorter has no direction
 
-// A segment from the mean of some keypoints to the mean of others, without side; what its unit vector may be off in the
-// image and in depth, and how much of it lies too far forward, in the subject's own frame.
-// [measured: BlazePose against marker motion capture and triangulated keypoints, nine takes of some five people]
-struct Segment {
-  std::string_view from, to;
-  double in_image, in_depth, forward_bias;
-};
-constexpr Segment kLimbSegments[] = {
-    {"upper_arm", "forearm", .12, .30, .15},
-    {"forearm", "hand", .15, .38, .10},
-    {"thigh", "shin", .12, .18, 0},
-    {"shin", "foot", .10, .18, .08},
-};
-constexpr double kTrunkInImage = .06, kTrunkInDepth = .18;
-constexpr double kHipsInImage = .12, kHipsInDepth = .15;
-constexpr double kShouldersInImage = .10, kShouldersInDepth = .12;
-
 // What something costs that is off by so many deviations, squared.
 double cost_of(double weight, double squared) { return weight * (kFreedom + 2) * std::log1p(squared / kFreedom); }
 double slope_of(double weight, double squared) { return weight * (kFreedom + 2) / (kFreedom + squared); }
@@ -44,12 +28,6 @@ double slope_of(double weight, double squared) { return weight * (kFreedom + 2) 
 Vector3d position(const Keypoint3D& keypoint) { return {keypoint.x[0], keypoint.x[1], keypoint.x[2]}; }
 
 }  // namespace
-
-Eigen::Matrix3d world_from_keypoints(const PinholeCamera& camera, const Keypoints3D& keypoints) {
-  const Vector3d ray = camera.ray_from_pixel({keypoints.centre_x, keypoints.centre_y});
-  return camera.cam_from_world.rotation.transpose() *
-         Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), ray).toRotationMatrix();
-}
 
 KeypointTerm::KeypointTerm(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
                            const KeypointWeights& weights)
@@ -93,8 +71,8 @@ void KeypointTerm::add_places(const BodyModel& body, const Observation& observat
 void KeypointTerm::add_directions(const BodyModel& body, const Keypoints3D& keypoints, double weight) {
   ray_from_world_ = world_from_keypoints(camera_, keypoints).transpose();
 
-  const auto add = [&](std::span<const std::string> from, std::span<const std::string> to, double in_image,
-                       double in_depth, const Vector3d& bias) {
+  const auto add = [&](std::span<const std::string> from, std::span<const std::string> to, const DirectionError& error,
+                       const Vector3d& bias) {
     Direction direction;
     Vector3d vector = Vector3d::Zero();
     double visibility = 1;
@@ -112,15 +90,15 @@ void KeypointTerm::add_directions(const BodyModel& body, const Keypoints3D& keyp
     }
     if (!vector.allFinite() || !(vector.norm() >= kShortest_m) || !(visibility > 0)) return;
     direction.observed = (vector.normalized() - bias).normalized();
-    direction.inverse_deviation = {1 / in_image, 1 / in_image, 1 / in_depth};
+    direction.inverse_deviation = {1 / error.in_image, 1 / error.in_image, 1 / error.in_depth};
     direction.weight = weight * visibility;
     directions_.push_back(std::move(direction));
   };
   const std::string hips[] = {"right_thigh", "left_thigh"}, shoulders[] = {"right_upper_arm", "left_upper_arm"};
   const std::span all_hips(hips), all_shoulders(shoulders);
-  add(all_hips, all_shoulders, kTrunkInImage, kTrunkInDepth, Vector3d::Zero());
-  add(all_hips.first(1), all_hips.last(1), kHipsInImage, kHipsInDepth, Vector3d::Zero());
-  add(all_shoulders.first(1), all_shoulders.last(1), kShouldersInImage, kShouldersInDepth, Vector3d::Zero());
+  add(all_hips, all_shoulders, kTrunkError, Vector3d::Zero());
+  add(all_hips.first(1), all_hips.last(1), kHipsError, Vector3d::Zero());
+  add(all_shoulders.first(1), all_shoulders.last(1), kShouldersError, Vector3d::Zero());
   // The subject's own forward: across hips and shoulders, and up the trunk.
   Vector3d forward = Vector3d::Zero();
   const Keypoint3D *right_hip = keypoints.find(hips[0]), *left_hip = keypoints.find(hips[1]),
@@ -133,9 +111,9 @@ void KeypointTerm::add_directions(const BodyModel& body, const Keypoints3D& keyp
     forward = left.cross(up).stableNormalized();
   }
   for (const std::string side : {"right_", "left_"}) {
-    for (const Segment& segment : kLimbSegments) {
+    for (const LimbSegment& segment : kLimbSegments) {
       const std::string from = side + std::string(segment.from), to = side + std::string(segment.to);
-      add(std::span(&from, 1), std::span(&to, 1), segment.in_image, segment.in_depth, segment.forward_bias * forward);
+      add(std::span(&from, 1), std::span(&to, 1), segment.error, segment.forward_bias * forward);
     }
   }
 }

@@ -29,9 +29,6 @@ struct KeypointWeights {
   double places = 0.3;       // [tuned on the same]
 };
 
-// The rotation from the axes of the keypoints to the world's.
-Eigen::Matrix3d world_from_keypoints(const PinholeCamera& camera, const Keypoints3D& keypoints);
-
 class KeypointTerm {
  public:
   // Of the keypoints that the body has by name. Directions are those of segments whose two ends are among them.

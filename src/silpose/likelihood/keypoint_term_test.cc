@@ -7,6 +7,7 @@
 #include "silpose/base/rng.h"
 #include "silpose/body/human.h"
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/shape/keypoint_axes.h"
 
 namespace silpose {
 namespace {

@@ -15,6 +15,7 @@
 #include "silpose/body/stretchable.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/track/girth_fit.h"
+#include "silpose/track/keypoint_sides.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/plausibility.h"
 #include "silpose/track/pose_fit.h"
@@ -33,6 +34,13 @@ constexpr SmallestGain kSmallestGain{.relative = 1e-3};
 constexpr int kVertices = 3000;        // of the mesh that is compared
 constexpr double kRestWeight = 0.2;    // plausibility.h
 constexpr double kMaxRotation = 0.35;  // radians a step
+// Errors of masks and networks are much alike in all instants: more instants than these tell no more of the lengths.
+// [tuned: a simulation like experiment human-proportions with other people, keypoints and masks; 2 and 4 were alike, 1
+// and 16 worse]
+constexpr double kIndependentInstants = 4;
+constexpr double kStature = 0.01;  // deviation, relative, of a stature that is given: shoes, posture [guess]
+// What a size by the floor may be off, of itself: as far as rendered subjects were (docs/results.md).
+constexpr double kOfCameraFile = 0.02;
 
 // The unknowns: lengths [S] of all instants, and a pose [D] each.
 struct Unknowns {
@@ -68,11 +76,13 @@ struct Point {
 
 class Problem {
  public:
-  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility, std::span<CoverageEvidence> evidence)
+  // `information` [S, S] is that of the lengths' prior.
+  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility, std::span<CoverageEvidence> evidence,
+          MatrixXd information)
       : likelihood_(likelihood),
         plausibility_(plausibility),
         evidence_(evidence),
-        information_(stretch_covariance(likelihood.body().skeleton).inverse()) {
+        information_(std::move(information)) {
     const std::vector<int> shape = shape_dofs(likelihood.body().skeleton);
     lower_.resize(std::ssize(shape)), upper_.resize(std::ssize(shape));
     for (Eigen::Index s = 0; s < lower_.size(); ++s) {
@@ -175,16 +185,75 @@ class Problem {
   VectorXd lower_, upper_;                // [S] limits of the lengths
 };
 
-std::optional<BodyFit> fit_size_of(const BodyModel& body, const PinholeCamera& camera,
-                                   std::span<const std::vector<double>> poses) {
-  BodyFit fit;
-  fit.size = fit_size(body, camera, poses);
-  if (!fit.size) return std::nullopt;
-  BodyModel fitted = scaled(body, fit.size->factor);
-  fitted.name += ",fitted";
-  fitted.facts["fitted_size"] = fmt::format("{:.4f}", fit.size->factor);
-  fit.body = std::make_shared<const BodyModel>(std::move(fitted));
-  return fit;
+// How the stature answers to the lengths [S]. Bones of both sides are lengthened together: the longer leg stands.
+VectorXd stature_by_lengths(const BodyModel& body) {
+  constexpr double kLonger = 0.01;  // metres
+  const Skeleton stretched = stretchable(body).skeleton;
+  const std::vector<int> shape = shape_dofs(stretched);
+  const auto name = [&](size_t s) { return without_side(stretched.dofs()[static_cast<size_t>(shape[s])].name); };
+  VectorXd stature(std::ssize(shape));
+  for (size_t s = 0; s < shape.size(); ++s) {
+    std::vector<double> lengths(shape.size(), 0.0);
+    double alike = 0;
+    for (size_t other = 0; other < shape.size(); ++other) {
+      if (name(other) == name(s)) lengths[other] = kLonger, ++alike;
+    }
+    stature[static_cast<Eigen::Index>(s)] = (with_lengths(body, lengths).height_m - body.height_m) / (kLonger * alike);
+  }
+  return stature;
+}
+
+// The lengths' prior information [S, S]: as people differ, and with one camera of a stature that is known.
+MatrixXd information_of_lengths(const BodyModel& body, bool one_camera, double size_deviation) {
+  const Skeleton stretched = stretchable(body).skeleton;
+  MatrixXd information = stretch_covariance(stretched).inverse();
+  if (!one_camera) return information;
+  const VectorXd stature = stature_by_lengths(body);
+  const double deviation = body.height_m * std::hypot(kStature, size_deviation);
+  return information + stature * stature.transpose() / (deviation * deviation);
+}
+
+// The body's size by the floor, and the poses of that body that look the same from the camera.
+std::optional<SizeFit> fit_size_to(BodyModel& body, const PinholeCamera& camera,
+                                   std::vector<std::vector<double>>& poses) {
+  const std::optional<SizeFit> size = fit_size(body, camera, poses);
+  if (!size) return size;
+  const Eigen::Vector3d centre = camera.centre_in_world();
+  for (std::vector<double>& pose : poses) {
+    if (pose.empty()) continue;
+    const Eigen::Vector3d root = body.skeleton.forward_kinematics(pose).front().translation;
+    place_root(body.skeleton, pose, centre + size->factor * (root - centre));
+  }
+  body = scaled(body, size->factor);
+  body.facts["fitted_size"] = fmt::format("{:.4f}", size->factor);
+  return size;
+}
+
+// The instants that tell lengths: with one camera by keypoints whose sides are right, with several by two of them.
+std::vector<size_t> telling_instants(std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
+                                     size_t num_cameras, EvidenceKind evidence) {
+  std::vector<size_t> usable;
+  if (num_cameras > 1) {
+    for (size_t t = 0; t < clip.size(); ++t) {
+      if (!poses[t].empty() && std::ranges::count_if(clip[t].observations, has_a_say) >= 2) usable.push_back(t);
+    }
+    return usable;
+  }
+  if (evidence == EvidenceKind::kSilhouette) return usable;
+  std::vector<const Keypoints3D*> keypoints;
+  std::vector<int64_t> times_ns;
+  for (const ClipInstant& instant : clip) {
+    keypoints.push_back(&instant.observations.front().keypoints);
+    times_ns.push_back(instant.time_ns);
+  }
+  const std::vector<double> exchanged = exchanged_sides(keypoints, times_ns);
+  for (size_t t = 0; t < clip.size(); ++t) {
+    const Observation& seen = clip[t].observations.front();
+    if (!poses[t].empty() && has_a_say(seen) && line_across(seen.keypoints) && exchanged[t] <= kExchanged) {
+      usable.push_back(t);
+    }
+  }
+  return usable;
 }
 
 }  // namespace
@@ -194,28 +263,43 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
                                 const BodyFitOptions& options, const std::function<bool()>& proceed) {
   check(poses.size() == clip.size(), "fit_body: {} poses of {} instants", poses.size(), clip.size());
   check(options.num_instants >= 1, "fit_body: from no instant");
-  std::vector<size_t> usable;
-  for (size_t t = 0; t < clip.size(); ++t) {
-    check(poses[t].empty() || poses[t].size() == body->skeleton.dofs().size(),
-          "fit_body: a pose of {} numbers for {} DOF", poses[t].size(), body->skeleton.dofs().size());
-    if (!poses[t].empty() && std::ranges::count_if(clip[t].observations, has_a_say) >= 2) usable.push_back(t);
+  for (const std::vector<double>& pose : poses) {
+    check(pose.empty() || pose.size() == body->skeleton.dofs().size(), "fit_body: a pose of {} numbers for {} DOF",
+          pose.size(), body->skeleton.dofs().size());
   }
-  if (cameras.size() == 1) {
-    return options.floor ? fit_size_of(*body, cameras.front(), poses) : std::nullopt;
+  const bool one_camera = cameras.size() == 1;
+  BodyFit fit;
+  BodyModel given = *body;
+  std::vector<std::vector<double>> given_poses(poses.begin(), poses.end());
+  const std::vector<size_t> usable = telling_instants(clip, poses, cameras.size(), options.evidence);
+  if (one_camera) {
+    fit.size_deviation = options.size_deviation;
+    if (options.floor && (usable.empty() || options.size_deviation > 0)) {
+      fit.size = fit_size_to(given, cameras.front(), given_poses);
+      if (fit.size) fit.size_deviation = std::max(fit.size->deviation, kOfCameraFile);
+    }
   }
-  if (usable.empty()) return std::nullopt;
+  if (usable.empty()) {
+    if (!fit.size) return std::nullopt;
+    given.name += ",fitted";
+    fit.body = std::make_shared<const BodyModel>(std::move(given));
+    return fit;
+  }
 
-  const BodyModel bare = stretchable(level_of_detail(*body, kVertices));
+  const BodyModel coarse = level_of_detail(given, kVertices);
+  const BodyModel bare = stretchable(coarse);
+  const size_t count = std::min(options.num_instants, usable.size());
+  const double instants_alike = std::max(1.0, static_cast<double>(count) / kIndependentInstants);
+  const MatrixXd information = instants_alike * information_of_lengths(coarse, one_camera, fit.size_deviation);
   const std::vector<int> shape = shape_dofs(bare.skeleton);
   const Girths girths_of(bare);
   const auto S = std::ssize(shape);
   Point at{{VectorXd::Zero(S), {}}, {}};
   GirthFit girths{VectorXd::Zero(std::ssize(girths_of.names())), {}};
   std::vector<size_t> chosen;
-  const size_t count = std::min(options.num_instants, usable.size());
   for (size_t i = 0; i < count; ++i) {
     chosen.push_back(usable[(2 * i + 1) * usable.size() / (2 * count)]);
-    const std::vector<double>& pose = poses[chosen.back()];
+    const std::vector<double>& pose = given_poses[chosen.back()];
     at.unknowns.poses.emplace_back(Eigen::Map<const VectorXd>(pose.data(), std::ssize(pose)));
   }
   std::vector<CoverageEvidence> evidence;
@@ -223,10 +307,12 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
     const auto stretched = std::make_shared<const BodyModel>(girths_of.applied(view(girths.girths)));
     const CoverageLikelihood likelihood(stretched, cameras);
     if (evidence.empty()) {
-      for (const size_t t : chosen) evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k4));
+      for (const size_t t : chosen) {
+        evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k4, options.evidence));
+      }
     }
     const Plausibility plausibility(stretched, options.floor);
-    Problem problem(likelihood, plausibility, evidence);
+    Problem problem(likelihood, plausibility, evidence, information);
     problem.estimate_noise(at.unknowns);
     for (const FitStage& stage : kStages) {
       at.equations = problem.linearise(at.unknowns, stage.blur);
@@ -241,16 +327,15 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
       girths = fit_girths(girths_of, cameras, evidence, at.unknowns.stretched_poses(), girths.girths, proceed);
     }
   }
-  BodyFit fit;
   fit.lengths.assign(at.unknowns.lengths.begin(), at.unknowns.lengths.end());
-  const MatrixXd covariance = Problem::reduce(at.equations, 0).hessian.inverse();
+  const MatrixXd covariance = instants_alike * Problem::reduce(at.equations, 0).hessian.inverse();
   for (Eigen::Index s = 0; s < S; ++s) fit.deviations.push_back(std::sqrt(std::max(covariance(s, s), 0.0)));
   for (const int d : shape) fit.names.push_back(bare.skeleton.dofs()[static_cast<size_t>(d)].name);
   for (size_t g = 0; g < girths_of.names().size(); ++g) {
     const auto idx = static_cast<Eigen::Index>(g);
     fit.girths.push_back({girths_of.names()[g], girths.girths[idx], girths.deviations[idx]});
   }
-  BodyModel fitted = with_lengths(Girths(*body).applied(view(girths.girths)), fit.lengths);
+  BodyModel fitted = with_lengths(Girths(given).applied(view(girths.girths)), fit.lengths);
   fitted.name += ",fitted";
   for (size_t s = 0; s < fit.names.size(); ++s) {
     fitted.facts[fit.names[s]] = fmt::format("{:+.4f} m", fit.lengths[s]);
@@ -260,6 +345,18 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
   }
   fit.body = std::make_shared<const BodyModel>(std::move(fitted));
   return fit;
+}
+
+TrackerOptions options_before_fit(const TrackerOptions& options) {
+  TrackerOptions pass = options_of_pass(options);
+  if (options.cameras.size() == 1) pass.floor = false;
+  return pass;
+}
+
+BodyFitOptions body_fit_options(const TrackerOptions& options) {
+  return {.floor = *options.resolved().floor,
+          .evidence = options.evidence == EvidenceKind::kSilhouette ? EvidenceKind::kSilhouette : EvidenceKind::kBoth,
+          .size_deviation = options.size_deviation};
 }
 
 }  // namespace silpose

@@ -7,9 +7,11 @@
 #include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
 #include "silpose/body/girth.h"
+#include "silpose/body/human.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/body/test_body.h"
 #include "silpose/render/silhouette.h"
+#include "silpose/synth/simulated_keypoints.h"
 
 namespace silpose {
 namespace {
@@ -128,6 +130,109 @@ TEST_F(BodyFitTest, TheNumberOfThreadsChangesNothing) {
     lengths[threads - 1] = fit_body(body_, cameras_, clip_, poses_).value().lengths;
   }
   EXPECT_EQ(lengths[0], lengths[1]);
+}
+
+// A person with shorter legs and a longer trunk than people of their stature, seen by one camera and a network.
+class OneCameraFitTest : public ::testing::Test {
+ protected:
+  static std::shared_ptr<const BodyModel> human() {
+    static const auto body = std::make_shared<const BodyModel>(
+        level_of_detail(build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 2000));
+    return body;
+  }
+  OneCameraFitTest() {
+    const Skeleton stretched = stretchable(*body_).skeleton;
+    for (const int d : shape_dofs(stretched)) {
+      const std::string_view name = without_side(stretched.dofs()[static_cast<size_t>(d)].name);
+      longer_.push_back(name == "shin_length" || name == "foot_length" ? -0.025 : name == "thorax_length" ? 0.05 : 0);
+    }
+    const auto subject = std::make_shared<const BodyModel>(with_lengths(*body_, longer_));
+    SyntheticMotion motion;
+    for (int t = 0; t < 8; ++t) {
+      motion.poses.push_back(standing_pose(*subject));
+      std::vector<double>& pose = motion.poses.back();
+      pose[dof("root_ry")] = 0.15 * t;
+      pose[dof("right_thigh_rx")] = -0.1 * t;
+      pose[dof("right_shin_rx")] = 0.05 * t;  // the left leg stands
+      pose[dof("right_upper_arm_rz")] = 0.9, pose[dof("left_upper_arm_rz")] = 0.6;
+      subject->skeleton.clamp(pose);
+    }
+    sequence_ = make_sequence(subject, motion, {.views = {{"it", 20}}}).value();
+    const SimulatedKeypoints network(sequence_, 0, 1);
+    for (int t = 0; t < sequence_.num_frames(); ++t) {
+      Observation seen;
+      seen.mask = true_mask(sequence_, 0, t);
+      seen.box = seen.mask.bounding_box();
+      SimulatedKeypoints::Seen drawn = network.draw(t, seen.box);
+      seen.landmarks = std::move(drawn.landmarks);
+      seen.keypoints = std::move(drawn.keypoints);
+      clip_.push_back({t, t * int64_t{33'333'333}, {std::move(seen)}});
+    }
+  }
+  size_t dof(const char* name) const { return static_cast<size_t>(body_->skeleton.find_dof(name).value()); }
+  [[nodiscard]] std::optional<BodyFit> fit(const BodyFitOptions& options,
+                                           const std::shared_ptr<const BodyModel>& body = human()) const {
+    return fit_body(body, sequence_.cameras, clip_, sequence_.poses, options);
+  }
+  // Metres that the two bones of a leg are longer, the mean of both legs, and the trunk with the neck is.
+  static std::pair<double, double> leg_and_trunk(const BodyFit& fit) {
+    double leg = 0, trunk = 0;
+    for (size_t s = 0; s < fit.names.size(); ++s) {
+      const std::string_view name = without_side(fit.names[s]);
+      if (name == "shin_length" || name == "foot_length") leg += fit.lengths[s] / 2;
+      if (name == "thorax_length" || name == "head_length") trunk += fit.lengths[s];
+    }
+    return {leg, trunk};
+  }
+
+  std::shared_ptr<const BodyModel> body_ = human();
+  std::vector<double> longer_;
+  SyntheticSequence sequence_;
+  std::vector<ClipInstant> clip_;
+};
+
+TEST_F(OneCameraFitTest, KeypointsTellBonesAndTheStatureStays) {
+  const std::optional<BodyFit> fitted = fit({.evidence = EvidenceKind::kBoth});
+  ASSERT_TRUE(fitted.has_value());
+  const auto [leg, trunk] = leg_and_trunk(*fitted);
+  EXPECT_NEAR(leg, -0.05, 0.03);  // the prior pulls to the body's own: half is found
+  EXPECT_NEAR(trunk, 0.05, 0.03);
+  EXPECT_NEAR(fitted->body->height_m, body_->height_m, 0.02);
+  EXPECT_FALSE(fitted->size.has_value());
+}
+
+TEST_F(OneCameraFitTest, TellsNothingWithoutKeypointsThatCount) {
+  EXPECT_FALSE(fit({.evidence = EvidenceKind::kSilhouette}).has_value());
+  for (ClipInstant& instant : clip_) instant.observations[0].keypoints = {};
+  EXPECT_FALSE(fit({.evidence = EvidenceKind::kBoth}).has_value());
+}
+
+TEST_F(OneCameraFitTest, LeavesOutKeypointsWhoseSidesAreExchanged) {
+  const auto [leg, trunk] = leg_and_trunk(fit({.evidence = EvidenceKind::kBoth}).value());
+  Keypoints3D& one = clip_[3].observations[0].keypoints;
+  for (Keypoint3D& point : one.points) {
+    point.x[2] = -point.x[2];
+    point.name = point.name.starts_with("left_") ? "right_" + point.name.substr(5) : "left_" + point.name.substr(6);
+  }
+  const auto [leg_then, trunk_then] = leg_and_trunk(fit({.evidence = EvidenceKind::kBoth}).value());
+  EXPECT_NEAR(leg_then, leg, 0.01);
+  EXPECT_NEAR(trunk_then, trunk, 0.01);
+}
+
+TEST_F(OneCameraFitTest, ASizeThatIsNotKnownComesFromTheFloor) {
+  const auto believed = std::make_shared<const BodyModel>(scaled(*body_, 1.08));
+  const Eigen::Vector3d centre = sequence_.cameras[0].centre_in_world();
+  for (std::vector<double>& pose : sequence_.poses) {
+    Eigen::Vector3d root = body_->skeleton.forward_kinematics(pose).front().translation;
+    root.y() += 0.05;  // the body's legs are so much longer than the subject's
+    place_root(body_->skeleton, pose, centre + 1.08 * (root - centre));
+  }
+  const auto fitted = fit({.floor = true, .evidence = EvidenceKind::kBoth, .size_deviation = 0.05}, believed);
+  ASSERT_TRUE(fitted.has_value() && fitted->size.has_value());
+  EXPECT_NEAR(fitted->size->factor, 1 / 1.08, 0.02);
+  EXPECT_NEAR(fitted->body->height_m, body_->height_m, 0.04);
+  EXPECT_LT(leg_and_trunk(*fitted).first, -0.02);
+  EXPECT_GT(fitted->size_deviation, 0);
 }
 
 }  // namespace

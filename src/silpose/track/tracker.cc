@@ -11,6 +11,7 @@
 #include "silpose/motion/common_poses.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/segment/background_segmenter.h"
+#include "silpose/shape/keypoint_axes.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/keypoint_sides.h"
 #include "silpose/track/observe.h"
