@@ -34,7 +34,7 @@ struct SmoothedPoses {
 // Shapes: poses [T][D], an instant each. An instant of which `seen` [T] is false is bridged by motion alone. Whole
 // turns of periodic DOF are kept from one pose to the next. `proceed` is asked between iterations; false ends early.
 SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
-                           std::span<const ClipInstant> clip, const std::vector<bool>& seen,
+                           std::span<const ClipInstant* const> clip, const std::vector<bool>& seen,
                            std::vector<Eigen::VectorXd> poses, const SmootherOptions& options,
                            const std::function<bool()>& proceed = {});
 

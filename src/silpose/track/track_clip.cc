@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -48,37 +49,57 @@ struct Possible {
   static auto members(auto& p) { return std::tie(p.poses, p.velocities); }
 };
 
-// The clip without the keypoints of frames in which the network exchanged left and right; empty where it never did.
-std::vector<ClipInstant> without_exchanged(std::span<const ClipInstant> clip, std::vector<double>& most_exchanged) {
-  std::vector<ClipInstant> judged;
-  most_exchanged.assign(clip.size(), 0.0);
-  const size_t num_cameras = clip.empty() ? 0 : clip.front().observations.size();
-  std::vector<int64_t> times;
-  times.reserve(clip.size());
-  for (const ClipInstant& instant : clip) times.push_back(instant.time_ns);
-  for (size_t c = 0; c < num_cameras; ++c) {
-    std::vector<const Keypoints3D*> keypoints;
-    keypoints.reserve(clip.size());
-    for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints);
-    const std::vector<double> exchanged = exchanged_sides(keypoints, times);
-    for (size_t t = 0; t < clip.size(); ++t) {
-      most_exchanged[t] = std::max(most_exchanged[t], exchanged[t]);
-      if (exchanged[t] <= kExchanged) continue;
-      if (judged.empty()) judged.assign(clip.begin(), clip.end());
-      judged[t].observations[c].keypoints = {};
-      judged[t].observations[c].landmarks.clear();
+// A clip in which keypoints do not count where the network exchanged left and right. Only the instants that this
+// changes are copied. The clip outlives it.
+class JudgedClip {
+ public:
+  // Errors: throws std::invalid_argument where observations do not fit the cameras.
+  JudgedClip(std::span<const ClipInstant> clip, size_t num_cameras) : exchanged_(clip.size(), 0.0) {
+    instants_.reserve(clip.size());
+    std::vector<int64_t> times;
+    times.reserve(clip.size());
+    for (const ClipInstant& instant : clip) {
+      check(instant.observations.size() == num_cameras, "track_clip: {} observations for {} cameras",
+            instant.observations.size(), num_cameras);
+      instants_.push_back(&instant);
+      times.push_back(instant.time_ns);
+    }
+    for (size_t c = 0; c < num_cameras; ++c) {
+      std::vector<const Keypoints3D*> keypoints;
+      keypoints.reserve(clip.size());
+      for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints);
+      const std::vector<double> exchanged = exchanged_sides(keypoints, times);
+      for (size_t t = 0; t < clip.size(); ++t) {
+        exchanged_[t] = std::max(exchanged_[t], exchanged[t]);
+        if (exchanged[t] <= kExchanged) continue;
+        ClipInstant& changed = changed_.try_emplace(t, clip[t]).first->second;
+        instants_[t] = &changed;
+        changed.observations[c].keypoints = {};
+        changed.observations[c].landmarks.clear();
+      }
     }
   }
-  return judged;
-}
+  JudgedClip(const JudgedClip&) = delete;
+  JudgedClip& operator=(const JudgedClip&) = delete;
+
+  [[nodiscard]] size_t size() const { return instants_.size(); }
+  [[nodiscard]] const ClipInstant& operator[](size_t t) const { return *instants_[t]; }
+  [[nodiscard]] std::span<const ClipInstant* const> instants() const { return instants_; }
+  // How probably the network exchanged left and right, of the camera where that is most probable.
+  [[nodiscard]] double exchanged(size_t t) const { return exchanged_[t]; }
+
+ private:
+  std::vector<const ClipInstant*> instants_;  // [T]
+  std::map<size_t, ClipInstant> changed_;     // by instant
+  std::vector<double> exchanged_;             // [T]
+};
 
 class ClipTracker {
  public:
   ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress,
               const ClipResume& resume)
       : options_(options.resolved()),
-        judged_(without_exchanged(clip, exchanged_)),
-        clip_(judged_.empty() ? clip : judged_),
+        clip_(clip, options.cameras.size()),
         progress_(progress),
         resume_(resume),
         possible_(clip.size()),
@@ -111,7 +132,7 @@ class ClipTracker {
     while (pass_ < kNumPasses && !stopped_) pass(ends[pass_][0], ends[pass_][1]);
     if (stopped_) return tell_and_stop();
     const SmoothedPoses smoothed = smooth_poses(
-        *likelihood_, *plausibility_, clip_.subspan(first_, last_ - first_ + 1),
+        *likelihood_, *plausibility_, clip_.instants().subspan(first_, last_ - first_ + 1),
         {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
         best_path(), {.evidence = options_.evidence, .noise = noise_}, [&] { return proceed(); });
     if (stopped_) return tell_and_stop();
@@ -325,7 +346,7 @@ class ClipTracker {
   }
 
   StepReport report_at(size_t t) const {
-    StepReport report{.frame_idx = clip_[t].frame_idx, .time_ns = clip_[t].time_ns, .exchanged = exchanged_[t]};
+    StepReport report{.frame_idx = clip_[t].frame_idx, .time_ns = clip_[t].time_ns, .exchanged = clip_.exchanged(t)};
     for (const Observation& observation : clip_[t].observations) {
       report.trust.push_back(observation.trust);
       report.observed.push_back(observation.mask);
@@ -377,9 +398,7 @@ class ClipTracker {
   static constexpr double kTransitionCap = 30;   // of one DOF
 
   TrackerOptions options_;
-  std::vector<double> exchanged_;    // [T] how probably the network exchanged left and right
-  std::vector<ClipInstant> judged_;  // where keypoints had to go
-  std::span<const ClipInstant> clip_;
+  JudgedClip clip_;
   const ClipProgress& progress_;
   const ClipResume& resume_;
   std::shared_ptr<const CoverageLikelihood> likelihood_;
