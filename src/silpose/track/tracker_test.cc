@@ -144,6 +144,9 @@ TEST_P(TrackerTest, WaitsUntilSomethingIsSeenThenCoastsWithGrowingSpread) {
     EXPECT_EQ(coasted.state, StepReport::State::kCoasted);
     EXPECT_EQ(coasted.visual_accuracy, 0);
     if (t == 9) {
+      // Of the bend: 2.4 times and more with seeds 1 to 10. The place may be little less certain than it was: where the
+      // mixture holds a stray hypothesis, metres away, with hardly any weight, that alone makes most of its spread.
+      EXPECT_GT(coasted.spread[5], 1.8 * seen.spread[5]);
       EXPECT_GT(coasted.spread[0], 1.05 * seen.spread[0]);
     }
   }
