@@ -30,7 +30,7 @@ using Eigen::VectorXd;
 constexpr size_t kNumStarts = 3;
 constexpr double kStartsApart_s = 0.5;
 
-// How much a silhouette tells of the pose: limbs that stand out make its outline long for its area.
+// How clearly silhouettes show the pose: limbs that stand out make an outline long for its area.
 double clarity(const ClipInstant& instant) {
   double sum = 0;
   for (const Observation& o : instant.observations) {
@@ -41,7 +41,7 @@ double clarity(const ClipInstant& instant) {
   return sum;
 }
 
-// What was held possible at one instant: poses and velocities [K, 2 D] of one or more passes, in clip time.
+// The hypotheses of one or more passes at one instant: poses and velocities [K, 2 D], in clip time.
 struct Possible {
   std::vector<VectorXd> poses, velocities;
   std::vector<double> energies;  // found once all passes are done
@@ -126,8 +126,8 @@ class ClipTracker {
     } else {
       restore(resume_.state);
     }
-    // From the clearest instant to the end, back to the beginning, and once more to the end: whatever one pass
-    // misses, another may have found.
+    // From the clearest instant to the end, back to the beginning, and once more to the end. One pass may find what
+    // another missed.
     const size_t ends[kNumPasses][2] = {{start_, last_}, {last_, first_}, {first_, last_}};
     while (pass_ < kNumPasses && !stopped_) pass(ends[pass_][0], ends[pass_][1]);
     if (stopped_) return tell_and_stop();
@@ -141,7 +141,7 @@ class ClipTracker {
   }
 
  private:
-  // Tells progress in passes: each instant counts when its share of the whole work is done.
+  // Reports progress: the instants are counted by the share of the whole work that is done.
   bool proceed(double done = -1) {
     if (done >= 0) done_ = done;
     if (progress_ && !stopped_) {
@@ -158,7 +158,7 @@ class ClipTracker {
       if (seen_[t]) order.push_back(t), score[t] = clarity(clip_[t]);
     }
     std::ranges::stable_sort(order, std::greater<>{}, [&](size_t t) { return score[t]; });
-    // What keypoints cost counts in some frames only: these are compared, as they tell more.
+    // Costs with and without keypoints cannot be compared. Frames with keypoints determine the pose better.
     if (start_evidence(options_) != EvidenceKind::kSilhouette) {
       const auto has_keypoints = [&](size_t t) {
         const auto& seen = clip_[t].observations;
@@ -247,7 +247,7 @@ class ClipTracker {
           "track_clip: not a state of this clip");
   }
 
-  // Of all that was held possible, the sequence that fits best and moves most plausibly. Source: Viterbi's algorithm.
+  // Of all hypotheses, the sequence that fits best and moves most plausibly. Source: Viterbi's algorithm.
   std::vector<VectorXd> best_path() {
     const Skeleton& skeleton = options_.body->skeleton;
     std::vector<double> scale = acceleration_deviation(skeleton);
@@ -309,8 +309,8 @@ class ClipTracker {
     return evidence;
   }
 
-  // What the passes held possible besides the smoothed pose, weighed by how well it fits: where they disagree and the
-  // silhouette cannot tell, the spread says so. Adds variances [D] and of landmarks [J + E].
+  // Adds the variances [D], and those of landmarks [J + E], of the passes' hypotheses about the smoothed pose, weighed
+  // by how well they fit. The spread is wide where the passes disagree and the evidence does not decide.
   void add_disagreement(size_t t, const CoverageEvidence& evidence, const StepReport& report,
                         CoverageLikelihood::Scratch& scratch, std::vector<double>& variance,
                         std::vector<Eigen::Vector3d>& landmark_variance) const {
