@@ -12,8 +12,8 @@ struct LandmarkRow {
   std::vector<uint32_t> right, left;
 };
 
-// In the order of Landmark. Seen on lean, muscular bodies, where bones show; checked by breadths and heights of
-// landmarks in people (human_joints_test.cc).
+// In the order of Landmark. Chosen by eye on lean, muscular bodies, whose bones show, and checked by people's breadths
+// and heights of these landmarks (human_joints_test.cc).
 const std::array<LandmarkRow, kNumLandmarks>& rows() {
   static const std::array<LandmarkRow, kNumLandmarks> table = {{
       {{4318, 4321, 4324, 4327}, {10947, 10950, 10952, 10955}},  // where the groin's fold begins
@@ -31,7 +31,7 @@ const std::array<LandmarkRow, kNumLandmarks>& rows() {
   return table;
 }
 
-// Of the joints 0 to 3.
+// Of the joints 0 to 3, in the MakeHuman rig (references.bib: makehuman).
 constexpr std::array<const char*, 4> kTrunkCubes = {"joint-pelvis", "joint-spine-4", "joint-spine-2", "joint-neck"};
 
 }  // namespace
@@ -55,12 +55,14 @@ HipCentres hip_centres(const PelvisSpines& spines) {
   const Vector3d left = (spines.left_front - spines.right_front) / width;
   const Vector3d superior = (front - back).cross(left).normalized();
   const Vector3d anterior = left.cross(superior);
+  // Source of all coefficients: harrington2007.
   const Vector3d middle = front + (-0.24 * depth - 0.0099) * anterior + (-0.30 * width - 0.0109) * superior;
   const Vector3d lateral = (0.33 * width + 0.0073) * left;
   return {.right = middle - lateral, .left = middle + lateral};
 }
 
 Vector3d shoulder_centre(const Vector3d& acromion, const Vector3d& other_acromion, const Vector3d& elbow) {
+  // Source: 0.17, rab2002; 0.104 and 0.043, deleva1996b. Their mean: human_joints.h.
   const double by_breadth = 0.17 * (acromion - other_acromion).norm();
   const double by_length = 0.104 * (acromion - elbow).norm() / (1 - 0.043);
   return acromion - (by_breadth + by_length) / 2 * Vector3d::UnitY();
@@ -69,7 +71,7 @@ Vector3d shoulder_centre(const Vector3d& acromion, const Vector3d& other_acromio
 Vector3d cube_centre(const MakeHumanMesh& base, std::span<const Vector3d> vertices, const std::string& cube) {
   Vector3d sum = Vector3d::Zero();
   for (const uint32_t v : base.cubes.at(cube)) sum += vertices[v];
-  return sum / 8;
+  return sum / 8;  // corners
 }
 
 std::array<Vector3d, 20> joint_centres(const MakeHumanMesh& base, std::span<const Vector3d> vertices,

@@ -3,9 +3,9 @@
 // Source: hip: regression on the pelvis (references.bib: harrington2007); knee, ankle: midpoints of the femoral
 // epicondyles and of the malleoli (wu2002); elbow, wrist: midpoints of the humeral epicondyles and of the styloids
 // (wu2005); shoulder: below the acromion (rab2002, deleva1996b). Trunk, clavicle: the MakeHuman rig's (makehuman).
-// Landmarks are means of a few skin vertices. Around a limb the skin is about as thick on both sides, so that midpoints
-// do not see it. At the pelvis it is not: the skin, 10 mm thick over the front spines and 20 mm over the back ones
-// (mantovani2016), would put the hips 3 mm too far forward, which is left so.
+// Landmarks are means of a few skin vertices. Around a limb the skin is about equally thick on both sides, so that it
+// does not move midpoints. At the pelvis it is not: it is 10 mm thick over the front spines and 20 mm over the back
+// ones (mantovani2016), so that hips are 3 mm too far forward, uncorrected.
 // Threads: functions without state.
 #pragma once
 
@@ -54,8 +54,8 @@ struct HipCentres {
 
 // Straight below the acromion, by the mean of two rules: 17 % of the distance between the acromia (rab2002), and 10.4 %
 // of that from acromion to radiale, where the elbow is 4.3 % of it above the radiale (deleva1996b). At a stature of
-// 1.70 m these are 63 and 32 mm; a third one, with other landmarks, says 51 (dumas2007), and between the two the
-// hanging arms are as far apart as people's. Source: references.bib: rab2002, deleva1996b.
+// 1.70 m these are 63 and 32 mm. A third rule, with other landmarks, gives 51 mm (dumas2007). With the mean the hanging
+// arms are as far apart as people's. Source: references.bib: rab2002, deleva1996b.
 [[nodiscard]] Eigen::Vector3d shoulder_centre(const Eigen::Vector3d& acromion, const Eigen::Vector3d& other_acromion,
                                               const Eigen::Vector3d& elbow);
 

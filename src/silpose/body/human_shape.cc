@@ -18,6 +18,7 @@ std::array<Label, 3> three_labels(const char* low, const char* middle, const cha
 }
 
 // Calls use(target name, coefficient) for every macro target with a coefficient: the product of its labels' weights.
+// Source of the rule, and of the ages from 2/3 to 1 of adults: bregier2025.
 template <class Use>
 void for_each_target(const Sliders& s, const Use& use) {
   const double old = std::clamp(3 * s.age - 2, 0.0, 1.0);
@@ -48,8 +49,8 @@ void for_each_target(const Sliders& s, const Use& use) {
 // kg/m2. Source: adults of the world in 2014, men 24.2, women 24.4 (references.bib: ncdrisc2016).
 double mean_body_mass_index(double sex) { return 24.2 + 0.2 * sex; }
 
-// The muscle slider that goes with a weight slider. The weight slider alone changes the mass of an average build by a
-// tenth only; heavy and light bodies need less muscle with it (BMI 15 to 41 instead of 20 to 24 for men).
+// [guess] The muscle slider that goes with a weight slider. The weight slider alone changes the mass of an average
+// build by a tenth only. With less muscle at both ends men's body mass index goes from 15 to 41 instead of 20 to 24.
 double muscle_slider(const Phenotype& phenotype, double weight) {
   return phenotype.muscle.value_or(0.5 - std::abs(weight - 0.5));
 }
@@ -100,11 +101,15 @@ class ShapeGrid {
   std::vector<Eigen::Vector3f> blend_;
 };
 
+// [guess] How exactly a wanted stature and mass are met.
+constexpr double kStature_m = 1e-5, kMass_kg = 1e-3;
+
 // The argument in [0, 1] at which a rising function takes `target`, to `tolerance` of its value.
 template <class Function>
 double bisect(const Function& f, double target, double tolerance) {
   double low = 0, high = 1, middle = 0.5;
-  for (int i = 0; i < 40; ++i) {
+  constexpr int kMostHalvings = 40;  // [guess] far more than any tolerance here needs
+  for (int i = 0; i < kMostHalvings; ++i) {
     middle = (low + high) / 2;
     const double value = f(middle);
     if (std::abs(value - target) < tolerance) break;
@@ -157,7 +162,7 @@ double mass_kg(std::span<const Eigen::Vector3f> vertices, std::span<const Face> 
                           c = vertices[face[2]].cast<double>();
     six_volumes += a.dot(b.cross(c));
   }
-  constexpr double kDensity = 980;  // kg/m3
+  constexpr double kDensity = 980;  // kg/m3. Source: bregier2025, assumed in its program
   return kDensity * six_volumes / 6 * 1e-3;
 }
 
@@ -176,18 +181,18 @@ Result<Sliders> solve_sliders(const MakeHumanAssets& assets, const Phenotype& ph
   const double average_height = sliders.height;
   const auto height_at = [&](double weight) {
     if (!phenotype.height_m) return average_height;
-    return bisect([&](double height) { return grid.stature(weight, height); }, *phenotype.height_m, 1e-5);
+    return bisect([&](double height) { return grid.stature(weight, height); }, *phenotype.height_m, kStature_m);
   };
   const double lightest = grid.mass(0, height_at(0)), heaviest = grid.mass(1, height_at(1));
   if (phenotype.weight_kg && (*phenotype.weight_kg < lightest || *phenotype.weight_kg > heaviest)) {
     return error("weight: {:.1f} kg is out of this body's range, {:.1f} to {:.1f} kg", *phenotype.weight_kg, lightest,
                  heaviest);
   }
-  // The sliders' average is slender: a body mass index of 21 for men, 19 for women.
+  // The sliders' average would be slender: a body mass index of 21 for men, 19 for women [measured on the shapes].
   const double height = phenotype.height_m.value_or(grid.stature(sliders.weight, average_height));
   const double weight_kg = phenotype.weight_kg.value_or(
       std::clamp(mean_body_mass_index(phenotype.sex) * height * height, lightest, heaviest));
-  sliders.weight = bisect([&](double weight) { return grid.mass(weight, height_at(weight)); }, weight_kg, 1e-3);
+  sliders.weight = bisect([&](double weight) { return grid.mass(weight, height_at(weight)); }, weight_kg, kMass_kg);
   sliders.muscle = muscle_slider(phenotype, sliders.weight);
   sliders.height = height_at(sliders.weight);
   return sliders;

@@ -196,20 +196,24 @@ TEST(MakeHumanData, SaysWhatIsMissingOrChanged) {
   std::filesystem::remove_all(copy);
 }
 
+// Where a collapse pinches the surface, more vertices are kept until none does: 2216 of the first body.
 TEST(LevelOfDetail, OfTheHumanIsClosedAndKeepsItsVertices) {
-  const BodyModel body = human("human:sex=m");
-  const BodyModel lod = level_of_detail(body, 2000);
-  EXPECT_NEAR(static_cast<double>(lod.rest.vertices.size()), 2000, 100);
-  EXPECT_TRUE(is_closed(lod.rest.faces));
-  EXPECT_EQ(lod.skin.row_start.size(), lod.rest.vertices.size() + 1);
-  EXPECT_NEAR(volume(lod.rest) / volume(body.rest), 1, 0.006);
-  const auto less = [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  };
-  std::vector<Eigen::Vector3f> whole = skin_vertices(body, standing_pose(body));
-  std::sort(whole.begin(), whole.end(), less);
-  const std::vector<Eigen::Vector3f> few = skin_vertices(lod, standing_pose(body));
-  for (const Eigen::Vector3f& x : few) EXPECT_TRUE(std::binary_search(whole.begin(), whole.end(), x, less));
+  for (const char* text : {"human", "human:sex=m", "human:sex=f"}) {
+    const BodyModel body = human(text);
+    const BodyModel lod = level_of_detail(body, 2000);
+    EXPECT_GE(lod.rest.vertices.size(), 2000u) << text;
+    EXPECT_LE(lod.rest.vertices.size(), 2300u) << text;
+    EXPECT_TRUE(is_closed(lod.rest.faces)) << text;
+    EXPECT_EQ(lod.skin.row_start.size(), lod.rest.vertices.size() + 1) << text;
+    EXPECT_NEAR(volume(lod.rest) / volume(body.rest), 1, 0.006) << text;
+    const auto less = [](const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    };
+    std::vector<Eigen::Vector3f> whole = skin_vertices(body, standing_pose(body));
+    std::sort(whole.begin(), whole.end(), less);
+    const std::vector<Eigen::Vector3f> few = skin_vertices(lod, standing_pose(body));
+    for (const Eigen::Vector3f& x : few) EXPECT_TRUE(std::binary_search(whole.begin(), whole.end(), x, less)) << text;
+  }
 }
 
 TEST(LevelOfDetail, KeepsTheExtentOfTheOutlineInEveryDirection) {

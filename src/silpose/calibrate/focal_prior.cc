@@ -9,20 +9,21 @@
 namespace silpose {
 namespace {
 
-constexpr double kFilmDiagonal_mm = 43.2666;  // of 36 x 24 mm
+constexpr double kFilmDiagonal_mm = 43.2666;  // of 36 x 24 mm [by definition]
 
-// Focal length over the larger side, and its deviation. Two phones in video, calibrated with a printed chessboard, have
-// 0.67 and 0.72 [measured]. The main camera of other phones, 24 to 28 mm as 35 mm equivalent in photos, has 0.64 to
-// 0.74 by that figure, up to a tenth more where video crops the sensor; wide action cameras have 0.5 to 0.6, webcams of
-// 60 to 70 degrees over the diagonal 0.8 to 1.0 [vendors' figures, not measured here]. That 0.75 within 20 % covers
-// them, and their share among users' clips, is a guess.
+// [guess] Focal length over the larger side, and its deviation. They are to cover the cameras in use, by their share
+// among users' clips:
+//   - Two phones in video, calibrated with a printed chessboard, have 0.67 and 0.72 [measured].
+//   - The main cameras of other phones have 24 to 28 mm as 35 mm equivalent in photos, which is 0.64 to 0.74, and up to
+//     a tenth more where video crops the sensor [vendors' figures].
+//   - Wide action cameras have 0.5 to 0.6, webcams of 60 to 70 degrees over the diagonal 0.8 to 1.0 [vendors' figures].
 constexpr double kUsual = 0.75, kUsualDeviation = 0.2;
-// No sensor in use is nearer to a square than 4:3 [guess: none is known]. A clip that is was cropped, from 4:3 or from
-// 16:9, whose larger side is 4/3 of 4:3's at the same height: as an even choice between the two, half of that ratio's
-// logarithm is the deviation, and the focal length of 4:3 is its lower end.
+// [guess] No sensor in use is nearer to a square than 4:3. A clip that is nearer was cropped, from 4:3 or from 16:9. At
+// the same height the larger side of 16:9 is 4/3 of that of 4:3. The prior's middle lies between the two, on a
+// logarithmic scale, and half of the ratio's logarithm is added to the deviation.
 constexpr double kSquarest = 4.0 / 3, kOtherwise = 16.0 / 9;
-// Whether a clip's tag is of the video or of a photo by the same lens depends on the maker; video shows a part of the
-// sensor, up to 1.2 times narrower [guess].
+// [guess] It depends on the maker whether a clip's tag is of the video or of a photo by the same lens. Video shows a
+// part of the sensor, with a field of view up to 1.2 times narrower.
 constexpr double kMetadataDeviation = 0.08;
 
 }  // namespace

@@ -1,6 +1,6 @@
-// FocalPrior: what is known of a camera's focal length before its clip is looked at: what a user or a file's metadata
-// say, or what cameras in use are like. All cameras are taken to have square pixels and their centre in the middle.
-// Based on: the pinhole camera; the 35 mm equivalent is taken by the diagonal, as is usual.
+// FocalPrior: a prior of a camera's focal length: from a user, from a file's metadata, or from the cameras in use.
+// Pixels are assumed square, and the principal point in the middle of the picture.
+// Based on: the pinhole camera; the 35 mm equivalent compares diagonals, as is usual.
 // Errors: every function throws std::invalid_argument for sizes, lengths and angles that are not positive.
 // Threads: functions without state.
 #pragma once
@@ -22,7 +22,7 @@ struct FocalPrior {
 // By the field of view along the picture's larger side, radians below pi.
 [[nodiscard]] double focal_px_of_view(double angle, int width, int height);
 
-// By the 35 mm equivalent that a file's metadata tell.
+// By the 35 mm equivalent in a file's metadata.
 [[nodiscard]] FocalPrior focal_length_of_metadata(double mm35, int width, int height);
 
 }  // namespace silpose

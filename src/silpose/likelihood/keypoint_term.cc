@@ -14,14 +14,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kFreedom = 4;  // [guess] degrees of Student's t
-// Of the body's height in the image: networks and rigs do not mean quite the same by a joint. [guess]
+constexpr double kFreedom = 4;  // [guess] degrees of freedom of Student's t
+// [guess] Standard deviation of a place, as a share of the body's height in the image. Networks and bodies define
+// joints differently.
 constexpr double kPlaceDeviation = 0.03;
-constexpr double kLeastVisible = 0.5;  // [guess]
-constexpr double kBehind = 1e4;  // squared deviations of what is behind the camera: more than anything in the image
-constexpr double kShortest_m = 0.05;  // [guess] a segment that the network takes for shorter has no direction
+constexpr double kLeastVisible = 0.5;  // [guess] keypoints of a lower visibility are left out
+// [guess] Squared deviations that a point behind the camera counts as. 100 deviations are about the diagonal of the
+// image for a body half as tall as it.
+constexpr double kBehind = 1e4;
+constexpr double kShortest_m = 0.05;   // [guess] a segment that the network sees shorter than this has no direction
+constexpr double kSquarePerArea = 10;  // [guess] the squared height of an upright body over its area, in most poses
+constexpr size_t kFewestSeen = 6;      // [guess] keypoints that determine the pose of a whole body
 
-// What something costs that is off by so many deviations, squared.
+// Cost of a residual of that many squared deviations, and its derivative.
 double cost_of(double weight, double squared) { return weight * (kFreedom + 2) * std::log1p(squared / kFreedom); }
 double slope_of(double weight, double squared) { return weight * (kFreedom + 2) / (kFreedom + squared); }
 
@@ -29,11 +34,12 @@ Vector3d position(const Keypoint3D& keypoint) { return {keypoint.x[0], keypoint.
 
 }  // namespace
 
+bool KeypointTerm::tells_pose() const { return num_seen_ >= kFewestSeen; }
+
 KeypointTerm::KeypointTerm(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
                            const KeypointWeights& weights)
     : camera_(camera) {
-  // An upright body covers about a tenth of its height squared, in most poses.
-  const double height_px = std::sqrt(10 * static_cast<double>(observation.mask.count()));
+  const double height_px = std::sqrt(kSquarePerArea * static_cast<double>(observation.mask.count()));
   deviation_px_ = std::max(1.0, kPlaceDeviation * height_px);
   add_places(body, observation, weights.places);
   if (weights.directions > 0 && !observation.keypoints.empty()) {
@@ -99,7 +105,7 @@ void KeypointTerm::add_directions(const BodyModel& body, const Keypoints3D& keyp
   add(all_hips, all_shoulders, kTrunkError, Vector3d::Zero());
   add(all_hips.first(1), all_hips.last(1), kHipsError, Vector3d::Zero());
   add(all_shoulders.first(1), all_shoulders.last(1), kShouldersError, Vector3d::Zero());
-  // The subject's own forward: across hips and shoulders, and up the trunk.
+  // The subject's forward direction: normal to the line across hips and shoulders, and to the trunk.
   Vector3d forward = Vector3d::Zero();
   const Keypoint3D *right_hip = keypoints.find(hips[0]), *left_hip = keypoints.find(hips[1]),
                    *right_shoulder = keypoints.find(shoulders[0]), *left_shoulder = keypoints.find(shoulders[1]);

@@ -1,8 +1,8 @@
 // KeypointTerm: how well poses agree with the keypoints that a network found in one camera's image. Two kinds of
 // evidence, both robust:
-//   - directions of limb segments in space (shoulder to elbow, hip to knee, ...), which tell what a silhouette cannot:
-//     depth, front from back, left from right. Residual: the pose's unit vector minus the network's.
-//   - places in the image, at a low weight: networks and bodies do not mean quite the same by a joint.
+//   - directions of limb segments in space (shoulder to elbow, hip to knee, ...). They show what a silhouette does not:
+//     depth, front and back, left and right. Residual: the pose's unit vector minus the network's.
+//   - places in the image, at a low weight, because networks and bodies define joints differently.
 // Based on: Student's t by its weights (references.bib: lange1989); the network is BlazePose (bazarevsky2020).
 // Threads: constant after construction.
 #pragma once
@@ -38,8 +38,8 @@ class KeypointTerm {
   [[nodiscard]] size_t num_places() const { return places_.size(); }
   [[nodiscard]] size_t num_directions() const { return directions_.size(); }
   [[nodiscard]] bool empty() const { return places_.empty() && directions_.empty(); }
-  // Too few of them tell nothing of the whole body.
-  [[nodiscard]] bool tells_pose() const { return num_seen_ >= 6; }
+  // Whether enough of them are seen to determine the pose of the whole body.
+  [[nodiscard]] bool tells_pose() const;
 
   // -2 log-likelihood of a pose [D], up to a constant. `skeleton` has the joints of the body, and perhaps more DOF.
   [[nodiscard]] double cost(const Skeleton& skeleton, std::span<const double> pose) const;
@@ -82,9 +82,9 @@ class KeypointTerm {
   double deviation_px_ = 1;
 };
 
-// What an observation's keypoints say where they count: null for kSilhouette, and where too few are seen to tell a
-// pose. By themselves they must tell where the body is, too, and places weigh fully. Without `places` only directions
-// count.
+// The term of an observation's keypoints. Null for kSilhouette, and where too few keypoints are seen to determine a
+// pose. With kKeypoints places have weight 1, since nothing else determines where the body is. Without `places` only
+// directions count.
 std::shared_ptr<const KeypointTerm> make_keypoint_term(const BodyModel& body, const PinholeCamera& camera,
                                                        const Observation& observation, EvidenceKind kind,
                                                        bool places = true);

@@ -11,14 +11,17 @@
 namespace silpose {
 namespace {
 
-// Outline noise (in units of pixel_unit^3) up to which the body counts as right, and from which on as any other's.
+// [guess] Outline noise, in units of pixel_unit^3. Below kRightBody the body is taken for the subject's, above kAnyBody
+// for an arbitrary one.
 constexpr double kRightBody = 2, kAnyBody = 20;
-// All frames together are worth this fraction of one frame's information where errors are the same in all of them: the
-// subject is not built as the body is, and a network has a bias of its own for each person and view.
-// [measured: so that nine in ten joints and knees of the experiment `real` lie within the claimed 90 %]
+// Some errors are the same in all frames: the subject is not built as the body is, and a network has a bias for each
+// person and view. All frames together then have this share of the information of a single frame.
+// [tuned: so that nine in ten joints and knees of the experiment `real` lie within the claimed 90 %]
 constexpr double kSilhouetteWorth = 0.05, kKeypointWorth = 0.35;
+constexpr double kFreeInformation = 1e-3;  // [guess] of DOF without a prior: small, so that matrices are invertible
 
-// 0 to 1, the cleanest camera's: what fits from one side may still be wrong, but not by much.
+// 0: the body is the subject's, 1: an arbitrary one. By the camera with the least noise: a body that fits one view well
+// is not far off.
 double wrongness(const CoverageEvidence& evidence) {
   double least = kAnyBody;
   for (size_t c = 0; c < evidence.views.size(); ++c) {
@@ -53,7 +56,7 @@ BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::s
   return result;
 }
 
-// The same silhouette, whatever the size: everything grows about the camera's centre.
+// A body that is scaled about the camera's centre has the same silhouette.
 void BodyError::add_wrong_size(const PinholeCamera& camera, std::span<const double> pose, Variance& result) const {
   if (size_deviation_ <= 0) return;
   const BodyModel& body = likelihood_->body();
@@ -85,11 +88,11 @@ void BodyError::add_wrong_lengths(const CoverageEvidence& evidence, std::span<co
   Eigen::VectorXd rest(D);
   for (Eigen::Index d = 0; d < D; ++d) {
     const double deviation = deviations[static_cast<size_t>(d)];
-    rest[d] = deviation > 0 ? 1 / (deviation * deviation) : 1e-3;
+    rest[d] = deviation > 0 ? 1 / (deviation * deviation) : kFreeInformation;
   }
   Eigen::MatrixXd held = hessian.topLeftCorner(D, D);
   held.diagonal() += rest;
-  // The pose answers to a change of lengths so that the silhouette stays where it is, as far as it can.
+  // How the fitted pose changes with the lengths: so that the silhouette changes least.
   Eigen::MatrixXd answer(D + S, S);
   answer.topRows(D) = -held.ldlt().solve(hessian.topRightCorner(D, S));
   answer.bottomRows(S).setIdentity();
@@ -101,8 +104,8 @@ void BodyError::add_wrong_lengths(const CoverageEvidence& evidence, std::span<co
   for (size_t l = 0; l < of_landmarks.size(); ++l) result.landmarks[l] += of_landmarks[l].cwiseMax(0);
 }
 
-// What one frame would leave open if it were the only one, and worth what all frames together are: errors that stay the
-// same from frame to frame do not average out, however long a clip is.
+// Covariance of a fit to one frame, whose information is reduced to what all frames together are worth. Errors that are
+// the same in all frames do not average out, however long a clip is.
 Eigen::MatrixXd BodyError::correlated_errors(const CoverageEvidence& evidence, std::span<const double> stretched,
                                              const Eigen::MatrixXd& information, const Eigen::VectorXd& rest,
                                              CoverageLikelihood::Scratch& scratch) const {

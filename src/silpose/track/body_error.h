@@ -1,11 +1,12 @@
-// BodyError: how far an estimate may be off because the subject is not built as the body is. Bones are allowed to be
-// longer or shorter (body/stretchable.h); a pose fitted with wrong lengths is off by how the fit answers to them, and
-// all frames are off alike, so that neither time nor a good overlap makes it smaller. How wrong the body is shows in
-// how badly its outline fits: with outlines as clean as exact masks of the right body leave them nothing is added.
-// But one camera sees a larger body further away as it sees a smaller one nearby: how well the size is known has to be
-// told, and is added whatever the outline. Masks and networks, too, have errors that change little from frame to frame,
-// and a filter that takes them for independent claims too much: what a single frame leaves open is added, as far as the
-// outline shows that neither body nor masks are exact.
+// BodyError: how far an estimate may be off because the subject is not built as the body is.
+//   - Bones may be longer or shorter (body/stretchable.h). A pose fitted with wrong lengths has the same error in all
+//     frames, however well it overlaps. The noise of the outline shows how wrong the body is: nothing is added where it
+//     is as low as exact masks of the right body leave it.
+//   - One camera sees a large body far away as it sees a small one nearby. The deviation of the size is an option, and
+//     is added whatever the outline.
+//   - Masks and networks have errors that change little from frame to frame. A filter that takes them for independent
+//     claims too much accuracy. The covariance of a single frame is added, as far as the outline's noise shows that
+//     neither body nor masks are exact.
 // Based on: consider covariance of parameters that are not estimated (references.bib: schmidt1966).
 // Threads: constant after construction; one CoverageLikelihood::Scratch of likelihood() per thread.
 #pragma once

@@ -10,16 +10,18 @@
 namespace silpose {
 namespace {
 
-// [guess] Rates at which exchanges begin and end, and their probability in the first frame.
+// [guess] Rates at which exchanges begin and end, and the probability of one in the first frame.
 constexpr double kBegins_per_s = 1, kEnds_per_s = 2, kAtFirst = 0.03;
-// [guess] How far a frame's line is off by the network's own noise (where it was seen, exchanged lines were up to 0.5
-// off the mirror image), and how fast a body pivots: what is believed follows no faster.
-constexpr double kNoise_rad = 0.45, kFastest_rad_per_s = 5;
-constexpr double kIndependent_s = 1.0 / 30;  // frames that follow sooner say partly the same
-constexpr double kOutlier = 0.01;            // of the likelihood: what tells nothing
-constexpr double kLongestGap_s = 0.5;        // after which the body may face anywhere
-constexpr double kLeastExchanged_s = 1,
-                 kMemory_s = 3;  // [guess] before which what came first is not doubted; how far back durations count
+// [guess] Standard deviation of a line by the network's noise. Exchanged lines that were looked at were up to 0.5 rad
+// off the mirror image.
+constexpr double kNoise_rad = 0.45;
+constexpr double kFastest_rad_per_s = 5;     // [guess] how fast a body pivots: the tracked line turns no faster
+constexpr double kIndependent_s = 1.0 / 30;  // [guess] closer frames have correlated noise, and count in proportion
+constexpr double kOutlier = 0.01;            // [guess] likelihood of an outlier, for either state
+constexpr double kLongestGap_s = 0.5;        // [guess] after a longer gap the body may face in any direction
+// [guess] The state in which a sequence began is revised after it was the other one for this long at least, and for as
+// long as it was the first; durations are counted up to kMemory_s.
+constexpr double kLeastExchanged_s = 1, kMemory_s = 3;
 
 Eigen::Vector3d mirrored(const Eigen::Vector3d& line) { return {-line.x(), -line.y(), line.z()}; }
 
@@ -68,7 +70,7 @@ double KeypointSides::step(const Keypoints3D& keypoints, double dt_s) {
   *line_ = ((1 - share) * *line_ + share * true_line.stableNormalized()).stableNormalized();
   double& held_s = exchanged_ > kExchanged ? exchanged_s_ : as_is_s_;
   held_s = std::min(held_s + passed_s, kMemory_s);
-  if (exchanged_s_ >= std::clamp(as_is_s_, kLeastExchanged_s, kMemory_s)) {  // it was the beginning that was exchanged
+  if (exchanged_s_ >= std::clamp(as_is_s_, kLeastExchanged_s, kMemory_s)) {  // the sequence began exchanged
     *line_ = mirrored(*line_);
     exchanged_ = 1 - exchanged_;
     std::swap(as_is_s_, exchanged_s_);
@@ -80,7 +82,7 @@ std::vector<double> exchanged_sides(std::span<const Keypoints3D* const> keypoint
   check(keypoints.size() == times_ns.size(), "exchanged_sides: {} frames, {} times", keypoints.size(), times_ns.size());
   std::vector<double> exchanged(keypoints.size(), 0.0);
   size_t first = 0, last_seen = 0;
-  // A stretch is judged once more from its end, so that its first frames are compared with what came after them.
+  // A second, backward pass over the stretch compares its first frames with later ones.
   const auto judge = [&](size_t begin, size_t end) {
     KeypointSides sides;
     for (const bool again : {false, true}) {

@@ -1,8 +1,8 @@
-// KeypointSides: whether a network took a body's left for its right. A network sees each image by itself; from behind,
-// or from the side, it may exchange the sides for some frames. What it sees then is the body mirrored in depth: the
-// line across hips and shoulders points the other way in the image, and the same way in depth. A body does not turn
-// half round within a tenth of a second: the line is followed over time, and each frame's is compared with it and with
-// its mirror image. Based on: a hidden Markov model of two states (references.bib: rabiner1989). Threads: values and
+// KeypointSides: whether a network exchanged a body's left and right. A network sees each image by itself. From behind,
+// or from the side, it may exchange the sides for some frames. It then sees the body mirrored in depth: the line across
+// hips and shoulders points the other way in the image, and the same way in depth. A body does not turn half round
+// within a tenth of a second. So the line is tracked over time, and each frame's line is compared with it and with its
+// mirror image. Based on: a hidden Markov model of two states (references.bib: rabiner1989). Threads: values and
 // functions without state.
 #pragma once
 
@@ -32,16 +32,16 @@ class KeypointSides {
 
  private:
   double exchanged_ = 0;
-  std::optional<Eigen::Vector3d> line_;  // across the body, as it is believed to be
+  std::optional<Eigen::Vector3d> line_;  // across the body, as tracked
   double since_last_s_ = 0;
   double as_is_s_ = 0, exchanged_s_ = 0;  // how long each state held
 };
 
-// The same for all frames of a clip at once: of each stretch without a gap the longer part is right. Shapes: keypoints
+// The same for all frames of a clip at once. The longer part of each stretch without a gap is right. Shapes: keypoints
 // and times [T] -> [T].
 std::vector<double> exchanged_sides(std::span<const Keypoints3D* const> keypoints, std::span<const int64_t> times_ns);
 
-// More probable than this: what the keypoints say is not used.
+// Keypoints are not used where an exchange is more probable than this, which is: more probable than not.
 inline constexpr double kExchanged = 0.5;
 
 }  // namespace silpose

@@ -16,10 +16,13 @@
 namespace silpose {
 namespace {
 
-constexpr int kMostIterations = 40;
-constexpr double kLongestTurn = 0.35, kLongestWay = 1;  // a step, radians and metres
-constexpr double kFarWorse = 25;                        // cost above the best of what is not proposed
-constexpr double kSamePose = 0.05;                      // metres
+constexpr int kMostIterations = 40;                     // [guess]
+constexpr SmallestGain kSmallestGain = {1e-3, 1e-4};    // [guess] of the cost
+constexpr double kLongestTurn = 0.35, kLongestWay = 1;  // [guess] of one step: radians, metres
+constexpr double kRegularisation = 1e-6;                // [guess] added to the diagonal: small, for invertible matrices
+constexpr double kFarWorse = 25;       // [guess] poses whose cost is so far above the best are not proposed
+constexpr double kSamePose = 0.05;     // [guess] metres: of two poses whose joints are all nearer, one is proposed
+constexpr double kSquarePerArea = 10;  // [guess] the squared height of an upright body over its area, in most poses
 
 struct Fit {
   Eigen::VectorXd pose;
@@ -29,13 +32,11 @@ struct Fit {
   [[nodiscard]] double cost() const { return sum; }
 };
 
-// How a pose agrees with the landmarks, and with how people hold themselves.
+// Cost of a pose: of its keypoints, and of its deviation from rest.
 class Problem {
  public:
   Problem(const BodyModel& body, const KeypointTerm& term)
-      : skeleton_(body.skeleton),
-        term_(term),
-        deviation_(pose_deviation(body.skeleton, term.num_directions() > 0)) {}
+      : skeleton_(body.skeleton), term_(term), deviation_(pose_deviation(body.skeleton, term.num_directions() > 0)) {}
 
   [[nodiscard]] Fit at(Eigen::VectorXd pose) const {
     const Eigen::Index D = pose.size();
@@ -55,7 +56,7 @@ class Problem {
   [[nodiscard]] std::optional<Fit> step(const Fit& from, double damping) const {
     Eigen::MatrixXd normal = from.hessian;
     normal.diagonal() *= 1 + damping;
-    normal.diagonal().array() += 1e-6;
+    normal.diagonal().array() += kRegularisation;
     Eigen::VectorXd way = normal.ldlt().solve(-from.gradient);
     if (!way.allFinite()) return std::nullopt;
     double longest = 1;
@@ -84,9 +85,10 @@ StateBatch LandmarkProposal::propose(const Observation& observation, int num_can
   const KeypointTerm term(*body_, camera_, observation, {.places = 1});
   if (!term.tells_pose() || observation.box.empty()) return common_.propose(observation, num_candidates, rng);
 
-  // As far away as a body of that size is, in the middle of the mask.
+  // At the distance at which the body covers as much as the mask, in the middle of its box.
   const Box& box = observation.box;
-  const double depth = body_->height_m * camera_.fy / std::sqrt(10 * static_cast<double>(observation.mask.count()));
+  const double depth =
+      body_->height_m * camera_.fy / std::sqrt(kSquarePerArea * static_cast<double>(observation.mask.count()));
   const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
   const Eigen::Vector3d root =
       camera_.cam_from_world.inverse() * Eigen::Vector3d(camera_.ray_from_pixel(middle) * depth);
@@ -98,7 +100,7 @@ StateBatch LandmarkProposal::propose(const Observation& observation, int num_can
       Eigen::VectorXd pose = poses.row(static_cast<Eigen::Index>(k)).transpose();
       place_root(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())}, root);
       fits[k] = problem.at(std::move(pose));
-      descend(fits[k], kMostIterations, {1e-3, 1e-4},
+      descend(fits[k], kMostIterations, kSmallestGain,
               [&](const Fit& from, double damping) { return problem.step(from, damping); });
     }
   });

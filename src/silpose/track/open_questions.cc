@@ -13,8 +13,10 @@
 namespace silpose {
 namespace {
 
-constexpr double kIntervalOfDeviation = 1.645;  // half of a 90 % interval
-constexpr double kGap_s = 0.2;                  // [guess] shorter gaps do not end what is doubtful
+constexpr double kIntervalOfDeviation = 1.645;  // half of a 90 % interval [by definition: of a normal distribution]
+constexpr double kGap_s = 0.2;                  // [guess] stretches that are closer than this are joined
+constexpr size_t kMostStretches = 4;            // [guess] that a line lists
+constexpr double kTwistCosine = 0.5;            // [guess] an axis nearer to the bone than 60 degrees twists it
 
 struct Stretch {
   double begin_s = 0, end_s = 0;
@@ -22,7 +24,7 @@ struct Stretch {
   double worst = 0;
 };
 
-// Stretches of frames for which `value` (nothing: no) is at least `least`.
+// Stretches of frames whose `value` is above `least`; a frame without a value is in none.
 template <typename Value>
 std::vector<Stretch> stretches(std::span<const StepReport> reports, double least, const Value& value) {
   std::vector<Stretch> found;
@@ -39,12 +41,11 @@ std::vector<Stretch> stretches(std::span<const StepReport> reports, double least
 }
 
 std::string times_of(std::span<const Stretch> some) {
-  constexpr size_t kMost = 4;
   std::string text;
-  for (size_t i = 0; i < std::min(some.size(), kMost); ++i) {
+  for (size_t i = 0; i < std::min(some.size(), kMostStretches); ++i) {
     text += fmt::format("{}{:.1f}-{:.1f}", i == 0 ? "" : ", ", some[i].begin_s, some[i].end_s);
   }
-  return text + (some.size() > kMost ? " s and later" : " s");
+  return text + (some.size() > kMostStretches ? " s and later" : " s");
 }
 
 int frames_of(std::span<const Stretch> some) {
@@ -69,9 +70,9 @@ std::vector<std::string> doubtful_angles(std::span<const StepReport> reports, co
       if (report.spread.empty()) return std::nullopt;
       double half = 0;
       for (const int d : skeleton.joints()[j].dof_indices) {
-        // A twist about the bone shows in nothing but what hangs below it.
+        // A twist about the bone is left out: it moves only the joints below it. Bones lie along y in the zero pose.
         const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-        if (!is_wanted(dof) || std::abs(dof.axis.y()) > 0.5) continue;
+        if (!is_wanted(dof) || std::abs(dof.axis.y()) > kTwistCosine) continue;
         half = std::max(half, kIntervalOfDeviation * to_degrees(report.spread[static_cast<size_t>(d)]));
       }
       return half;

@@ -12,8 +12,9 @@
 
 namespace silpose {
 
-// A claimed 90 % interval that is wider to either side than this is doubtful, and so is a second pose that is at least
-// this likely; what is doubtful for a shorter time is left out. [guess]
+// [guess] An angle is doubtful where half of its claimed 90 % interval is wider than kDoubtful_deg. A second pose
+// leaves a question open where its weight is above kOpenWeight. Angles that are doubtful for less than kShortest_s are
+// left out.
 inline constexpr double kDoubtful_deg = 30, kOpenWeight = 0.15, kShortest_s = 0.25;
 
 // "right_shin 3.1-4.0 s: within 35 degrees", the widest first, at most `most`: of the joints between long bones (those

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <string>
 
 #include "silpose/body/human.h"
@@ -50,16 +51,24 @@ TEST(ExchangedInPicture, HandsAreSeenWhereTheOtherWas) {
   for (const auto& [a, b] : alike_limbs(skeleton, limbs)) {
     if (!skeleton.dofs()[static_cast<size_t>(limbs[a].dofs.front())].name.ends_with("upper_arm_rx")) continue;
     ++found;
-    Rng rng(1);
-    const auto exchanged = exchanged_in_picture(human(), limbs[a], limbs[b], pose, kEye, rng);
-    ASSERT_EQ(exchanged.size(), pose.size());
-    for (const auto& [hand, other] : {std::pair{"right_hand", "left_hand"}, std::pair{"left_hand", "right_hand"}}) {
-      EXPECT_GT(seen_apart(place_of(hand, pose), place_of(other, pose)), 0.4);
-      EXPECT_LT(seen_apart(place_of(hand, exchanged), place_of(other, pose)), 0.25) << hand;  // shoulders differ
+    constexpr int kSeeds = 10;
+    std::map<std::string, double> mean;
+    for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+      Rng rng(seed);
+      const auto exchanged = exchanged_in_picture(human(), limbs[a], limbs[b], pose, kEye, rng);
+      ASSERT_EQ(exchanged.size(), pose.size());
+      for (const auto& [hand, other] : {std::pair{"right_hand", "left_hand"}, std::pair{"left_hand", "right_hand"}}) {
+        EXPECT_GT(seen_apart(place_of(hand, pose), place_of(other, pose)), 0.4);
+        const double off = seen_apart(place_of(hand, exchanged), place_of(other, pose));
+        // Elbows must fit, too, from another shoulder: the best of some random tries. Seeds 1 to 40 gave up to 0.234.
+        EXPECT_LT(off, 0.25) << hand << seed;
+        mean[hand] += off / kSeeds;
+      }
+      for (const char* still : {"right_foot", "left_foot", "head_top"}) {
+        EXPECT_LT((place_of(still, exchanged) - place_of(still, pose)).norm(), 1e-9) << still;
+      }
     }
-    for (const char* still : {"right_foot", "left_foot", "head_top"}) {
-      EXPECT_LT((place_of(still, exchanged) - place_of(still, pose)).norm(), 1e-9) << still;
-    }
+    for (const auto& [hand, off] : mean) EXPECT_LT(off, 0.2) << hand;
   }
   EXPECT_EQ(found, 1);
 }

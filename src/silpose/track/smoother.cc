@@ -111,8 +111,8 @@ struct Point {
 
 class Problem {
  public:
-  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility, std::span<const ClipInstant> clip,
-          const std::vector<bool>& seen, const SmootherOptions& options)
+  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+          std::span<const ClipInstant* const> clip, const std::vector<bool>& seen, const SmootherOptions& options)
       : likelihood_(likelihood),
         plausibility_(plausibility),
         clip_(clip),
@@ -141,7 +141,7 @@ class Problem {
       CoverageLikelihood::Scratch scratch(likelihood_);
       for (size_t t = begin; t < end; ++t) {
         if (!seen_[t]) continue;
-        const CoverageEvidence evidence = likelihood_.prepare(clip_[t].observations, Blur::k8, Blur::k8);
+        const CoverageEvidence evidence = likelihood_.prepare(clip_[t]->observations, Blur::k8, Blur::k8);
         found[t] = likelihood_.estimate_noise(evidence, view(poses[t]), scratch);
       }
     });
@@ -168,7 +168,7 @@ class Problem {
         at.hessian[t] = MatrixXd::Zero(D, D);
         bool directions_seen = false;
         if (seen_[t]) {
-          CoverageEvidence evidence = likelihood_.prepare(clip_[t].observations, blur, blur, options_.evidence);
+          CoverageEvidence evidence = likelihood_.prepare(clip_[t]->observations, blur, blur, options_.evidence);
           directions_seen = evidence.has_directions();
           evidence.set_noise(noise_);
           NormalEquations equations = likelihood_.linearise(evidence, blur, view(poses[t]), scratch);
@@ -227,7 +227,7 @@ class Problem {
 
  private:
   [[nodiscard]] double seconds_before(size_t t) const {
-    return static_cast<double>(clip_[t].time_ns - clip_[t - 1].time_ns) * 1e-9;
+    return static_cast<double>(clip_[t]->time_ns - clip_[t - 1]->time_ns) * 1e-9;
   }
 
   struct AccelerationTerms {
@@ -246,7 +246,7 @@ class Problem {
 
   const CoverageLikelihood& likelihood_;
   const Plausibility& plausibility_;
-  std::span<const ClipInstant> clip_;
+  std::span<const ClipInstant* const> clip_;
   const std::vector<bool>& seen_;
   const SmootherOptions& options_;
   std::vector<double> noise_;  // [C]
@@ -264,7 +264,7 @@ void keep_whole_turns(const Skeleton& skeleton, std::vector<VectorXd>& poses) {
 }  // namespace
 
 SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
-                           std::span<const ClipInstant> clip, const std::vector<bool>& seen,
+                           std::span<const ClipInstant* const> clip, const std::vector<bool>& seen,
                            std::vector<Eigen::VectorXd> poses, const SmootherOptions& options,
                            const std::function<bool()>& proceed) {
   check(!poses.empty() && poses.size() == clip.size() && seen.size() == clip.size(),

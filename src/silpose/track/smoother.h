@@ -1,5 +1,5 @@
-// smooth_poses(): the poses of a whole clip at once: each must fit its silhouettes, and together they must move
-// smoothly. Least squares over all frames, from wide blur to narrow. It polishes a path; it cannot leave a wrong basin.
+// smooth_poses(): fits the poses of a whole clip at once. Each must fit its silhouettes, and together they must move
+// smoothly. Least squares over all frames, from wide blur to narrow. It refines a path, and cannot leave a wrong basin.
 // Based on: Gauss-Newton with a block-banded normal matrix; marginal covariances by the block form of the Takahashi
 // recursion (references.bib: nocedal2006, takahashi1973).
 // Threads: a function without state; uses all cores and gives the same result on any number.
@@ -34,7 +34,7 @@ struct SmoothedPoses {
 // Shapes: poses [T][D], an instant each. An instant of which `seen` [T] is false is bridged by motion alone. Whole
 // turns of periodic DOF are kept from one pose to the next. `proceed` is asked between iterations; false ends early.
 SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
-                           std::span<const ClipInstant> clip, const std::vector<bool>& seen,
+                           std::span<const ClipInstant* const> clip, const std::vector<bool>& seen,
                            std::vector<Eigen::VectorXd> poses, const SmootherOptions& options,
                            const std::function<bool()>& proceed = {});
 

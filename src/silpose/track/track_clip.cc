@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,7 +30,7 @@ using Eigen::VectorXd;
 constexpr size_t kNumStarts = 3;
 constexpr double kStartsApart_s = 0.5;
 
-// How much a silhouette tells of the pose: limbs that stand out make its outline long for its area.
+// How clearly silhouettes show the pose: limbs that stand out make an outline long for its area.
 double clarity(const ClipInstant& instant) {
   double sum = 0;
   for (const Observation& o : instant.observations) {
@@ -40,7 +41,7 @@ double clarity(const ClipInstant& instant) {
   return sum;
 }
 
-// What was held possible at one instant: poses and velocities [K, 2 D] of one or more passes, in clip time.
+// The hypotheses of one or more passes at one instant: poses and velocities [K, 2 D], in clip time.
 struct Possible {
   std::vector<VectorXd> poses, velocities;
   std::vector<double> energies;  // found once all passes are done
@@ -48,37 +49,57 @@ struct Possible {
   static auto members(auto& p) { return std::tie(p.poses, p.velocities); }
 };
 
-// The clip without the keypoints of frames in which the network exchanged left and right; empty where it never did.
-std::vector<ClipInstant> without_exchanged(std::span<const ClipInstant> clip, std::vector<double>& most_exchanged) {
-  std::vector<ClipInstant> judged;
-  most_exchanged.assign(clip.size(), 0.0);
-  const size_t num_cameras = clip.empty() ? 0 : clip.front().observations.size();
-  std::vector<int64_t> times;
-  times.reserve(clip.size());
-  for (const ClipInstant& instant : clip) times.push_back(instant.time_ns);
-  for (size_t c = 0; c < num_cameras; ++c) {
-    std::vector<const Keypoints3D*> keypoints;
-    keypoints.reserve(clip.size());
-    for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints);
-    const std::vector<double> exchanged = exchanged_sides(keypoints, times);
-    for (size_t t = 0; t < clip.size(); ++t) {
-      most_exchanged[t] = std::max(most_exchanged[t], exchanged[t]);
-      if (exchanged[t] <= kExchanged) continue;
-      if (judged.empty()) judged.assign(clip.begin(), clip.end());
-      judged[t].observations[c].keypoints = {};
-      judged[t].observations[c].landmarks.clear();
+// A clip in which keypoints do not count where the network exchanged left and right. Only the instants that this
+// changes are copied. The clip outlives it.
+class JudgedClip {
+ public:
+  // Errors: throws std::invalid_argument where observations do not fit the cameras.
+  JudgedClip(std::span<const ClipInstant> clip, size_t num_cameras) : exchanged_(clip.size(), 0.0) {
+    instants_.reserve(clip.size());
+    std::vector<int64_t> times;
+    times.reserve(clip.size());
+    for (const ClipInstant& instant : clip) {
+      check(instant.observations.size() == num_cameras, "track_clip: {} observations for {} cameras",
+            instant.observations.size(), num_cameras);
+      instants_.push_back(&instant);
+      times.push_back(instant.time_ns);
+    }
+    for (size_t c = 0; c < num_cameras; ++c) {
+      std::vector<const Keypoints3D*> keypoints;
+      keypoints.reserve(clip.size());
+      for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints);
+      const std::vector<double> exchanged = exchanged_sides(keypoints, times);
+      for (size_t t = 0; t < clip.size(); ++t) {
+        exchanged_[t] = std::max(exchanged_[t], exchanged[t]);
+        if (exchanged[t] <= kExchanged) continue;
+        ClipInstant& changed = changed_.try_emplace(t, clip[t]).first->second;
+        instants_[t] = &changed;
+        changed.observations[c].keypoints = {};
+        changed.observations[c].landmarks.clear();
+      }
     }
   }
-  return judged;
-}
+  JudgedClip(const JudgedClip&) = delete;
+  JudgedClip& operator=(const JudgedClip&) = delete;
+
+  [[nodiscard]] size_t size() const { return instants_.size(); }
+  [[nodiscard]] const ClipInstant& operator[](size_t t) const { return *instants_[t]; }
+  [[nodiscard]] std::span<const ClipInstant* const> instants() const { return instants_; }
+  // How probably the network exchanged left and right, of the camera where that is most probable.
+  [[nodiscard]] double exchanged(size_t t) const { return exchanged_[t]; }
+
+ private:
+  std::vector<const ClipInstant*> instants_;  // [T]
+  std::map<size_t, ClipInstant> changed_;     // by instant
+  std::vector<double> exchanged_;             // [T]
+};
 
 class ClipTracker {
  public:
   ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress,
               const ClipResume& resume)
       : options_(options.resolved()),
-        judged_(without_exchanged(clip, exchanged_)),
-        clip_(judged_.empty() ? clip : judged_),
+        clip_(clip, options.cameras.size()),
         progress_(progress),
         resume_(resume),
         possible_(clip.size()),
@@ -105,13 +126,13 @@ class ClipTracker {
     } else {
       restore(resume_.state);
     }
-    // From the clearest instant to the end, back to the beginning, and once more to the end: whatever one pass
-    // misses, another may have found.
+    // From the clearest instant to the end, back to the beginning, and once more to the end. One pass may find what
+    // another missed.
     const size_t ends[kNumPasses][2] = {{start_, last_}, {last_, first_}, {first_, last_}};
     while (pass_ < kNumPasses && !stopped_) pass(ends[pass_][0], ends[pass_][1]);
     if (stopped_) return tell_and_stop();
     const SmoothedPoses smoothed = smooth_poses(
-        *likelihood_, *plausibility_, clip_.subspan(first_, last_ - first_ + 1),
+        *likelihood_, *plausibility_, clip_.instants().subspan(first_, last_ - first_ + 1),
         {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
         best_path(), {.evidence = options_.evidence, .noise = noise_}, [&] { return proceed(); });
     if (stopped_) return tell_and_stop();
@@ -120,7 +141,7 @@ class ClipTracker {
   }
 
  private:
-  // Tells progress in passes: each instant counts when its share of the whole work is done.
+  // Reports progress: the instants are counted by the share of the whole work that is done.
   bool proceed(double done = -1) {
     if (done >= 0) done_ = done;
     if (progress_ && !stopped_) {
@@ -137,7 +158,7 @@ class ClipTracker {
       if (seen_[t]) order.push_back(t), score[t] = clarity(clip_[t]);
     }
     std::ranges::stable_sort(order, std::greater<>{}, [&](size_t t) { return score[t]; });
-    // What keypoints cost counts in some frames only: these are compared, as they tell more.
+    // Costs with and without keypoints cannot be compared. Frames with keypoints determine the pose better.
     if (start_evidence(options_) != EvidenceKind::kSilhouette) {
       const auto has_keypoints = [&](size_t t) {
         const auto& seen = clip_[t].observations;
@@ -226,7 +247,7 @@ class ClipTracker {
           "track_clip: not a state of this clip");
   }
 
-  // Of all that was held possible, the sequence that fits best and moves most plausibly. Source: Viterbi's algorithm.
+  // Of all hypotheses, the sequence that fits best and moves most plausibly. Source: Viterbi's algorithm.
   std::vector<VectorXd> best_path() {
     const Skeleton& skeleton = options_.body->skeleton;
     std::vector<double> scale = acceleration_deviation(skeleton);
@@ -288,8 +309,8 @@ class ClipTracker {
     return evidence;
   }
 
-  // What the passes held possible besides the smoothed pose, weighed by how well it fits: where they disagree and the
-  // silhouette cannot tell, the spread says so. Adds variances [D] and of landmarks [J + E].
+  // Adds the variances [D], and those of landmarks [J + E], of the passes' hypotheses about the smoothed pose, weighed
+  // by how well they fit. The spread is wide where the passes disagree and the evidence does not decide.
   void add_disagreement(size_t t, const CoverageEvidence& evidence, const StepReport& report,
                         CoverageLikelihood::Scratch& scratch, std::vector<double>& variance,
                         std::vector<Eigen::Vector3d>& landmark_variance) const {
@@ -325,7 +346,7 @@ class ClipTracker {
   }
 
   StepReport report_at(size_t t) const {
-    StepReport report{.frame_idx = clip_[t].frame_idx, .time_ns = clip_[t].time_ns, .exchanged = exchanged_[t]};
+    StepReport report{.frame_idx = clip_[t].frame_idx, .time_ns = clip_[t].time_ns, .exchanged = clip_.exchanged(t)};
     for (const Observation& observation : clip_[t].observations) {
       report.trust.push_back(observation.trust);
       report.observed.push_back(observation.mask);
@@ -377,9 +398,7 @@ class ClipTracker {
   static constexpr double kTransitionCap = 30;   // of one DOF
 
   TrackerOptions options_;
-  std::vector<double> exchanged_;    // [T] how probably the network exchanged left and right
-  std::vector<ClipInstant> judged_;  // where keypoints had to go
-  std::span<const ClipInstant> clip_;
+  JudgedClip clip_;
   const ClipProgress& progress_;
   const ClipResume& resume_;
   std::shared_ptr<const CoverageLikelihood> likelihood_;

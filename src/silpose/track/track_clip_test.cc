@@ -6,10 +6,18 @@
 
 #include "silpose/body/test_body.h"
 #include "silpose/render/silhouette.h"
+#include "silpose/track/keypoint_sides.h"
+#include "silpose/track/keypoints_for_test.h"
 #include "silpose/track/smoother.h"
 
 namespace silpose {
 namespace {
+
+std::vector<const ClipInstant*> pointers(std::span<const ClipInstant> clip) {
+  std::vector<const ClipInstant*> instants;
+  for (const ClipInstant& instant : clip) instants.push_back(&instant);
+  return instants;
+}
 
 class ClipTest : public ::testing::Test {
  protected:
@@ -54,7 +62,7 @@ TEST_F(ClipTest, SmoothingBridgesAGapAndKnowsItLess) {
     if (!seen.back()) pose = truth(5);
     poses.emplace_back(Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose)));
   }
-  const SmoothedPoses smoothed = smooth_poses(likelihood, {body_, true}, instants, seen, poses, {});
+  const SmoothedPoses smoothed = smooth_poses(likelihood, {body_, true}, pointers(instants), seen, poses, {});
   ASSERT_EQ(smoothed.poses.size(), 15u);
   for (int t = 0; t < 15; ++t) {
     EXPECT_NEAR(smoothed.poses[static_cast<size_t>(t)][0], truth(t)[0], 0.02) << t;
@@ -70,7 +78,7 @@ TEST_F(ClipTest, WithoutSilhouettesTheMiddleIsKnownBest) {
   const std::vector<double> pose = truth(0);
   const std::vector<Eigen::VectorXd> poses(7, Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose)));
   const SmoothedPoses smoothed =
-      smooth_poses(likelihood, {body_, true}, instants, std::vector<bool>(7, false), poses, {});
+      smooth_poses(likelihood, {body_, true}, pointers(instants), std::vector<bool>(7, false), poses, {});
   for (const int t : {0, 6})
     EXPECT_GT(smoothed.covariances[static_cast<size_t>(t)](5, 5), smoothed.covariances[3](5, 5));
   EXPECT_NEAR(smoothed.covariances[0](5, 5), smoothed.covariances[6](5, 5), 1e-6 * smoothed.covariances[0](5, 5));
@@ -87,7 +95,8 @@ TEST_F(ClipTest, WhatStandsDoesNotSlide) {
     poses.back()[1] = 0.5;
   }
   const auto slide = [&](bool floor) {
-    const auto smoothed = smooth_poses(likelihood, {body_, floor}, instants, std::vector<bool>(9, false), poses, {});
+    const auto smoothed =
+        smooth_poses(likelihood, {body_, floor}, pointers(instants), std::vector<bool>(9, false), poses, {});
     return smoothed.poses[8][0] - smoothed.poses[0][0];
   };
   EXPECT_NEAR(slide(false), 0.048, 0.005);
@@ -167,6 +176,82 @@ TEST_F(ClipTest, RefusesAStateOfAnotherClip) {
   track_clip(
       accurate(), clip(4, 9, 9), [&](size_t, size_t) { return state.empty(); }, keep);
   EXPECT_THROW(track_clip(accurate(), clip(3, 9, 9), {}, {.state = state, .keep = {}}), std::invalid_argument);
+}
+
+// A body of two sides, turned 0.6 rad, whose network exchanges left and right in frames 4 to 6 of 9.
+class ExchangedClipTest : public ClipTest {
+ protected:
+  static bool is_exchanged(size_t t) { return t >= 4 && t <= 6; }
+  ExchangedClipTest() {
+    body_ = std::make_shared<BodyModel>(make_sided_body());
+    for (int t = 0; t < 9; ++t) {
+      std::vector<double> pose = truth(t);
+      pose[3] = 0.6;
+      clip_.push_back({.frame_idx = t, .time_ns = t * int64_t{33'333'333}, .observations = {{}}});
+      Observation& seen = clip_.back().observations.front();
+      seen.mask = render_silhouette(*body_, camera_, pose);
+      seen.box = seen.mask.bounding_box();
+      add_keypoints(*body_, camera_, pose, seen, is_exchanged(static_cast<size_t>(t)));
+    }
+  }
+  TrackerOptions by_keypoints(bool smooth) const {
+    TrackerOptions options = accurate();
+    options.initial_pose.reset();
+    options.smooth = smooth;
+    options.evidence = EvidenceKind::kBoth;
+    options.landmarks = true;
+    options.num_hypotheses = 2;
+    return options;
+  }
+
+  std::vector<ClipInstant> clip_;
+};
+
+// Bit for bit as if the network had found no keypoints in those frames.
+TEST_F(ExchangedClipTest, ExchangedKeypointsDoNotCount) {
+  std::vector<ClipInstant> without = clip_;
+  for (size_t t = 0; t < without.size(); ++t) {
+    if (!is_exchanged(t)) continue;
+    without[t].observations[0].keypoints = {};
+    without[t].observations[0].landmarks.clear();
+  }
+  const std::vector<StepReport> found = track_clip(by_keypoints(true), clip_),
+                                expected = track_clip(by_keypoints(true), without);
+  ASSERT_EQ(found.size(), clip_.size());
+  for (size_t t = 0; t < found.size(); ++t) {
+    EXPECT_EQ(found[t].exchanged > kExchanged, is_exchanged(t)) << t;
+    EXPECT_EQ(expected[t].exchanged > kExchanged, false) << t;
+    EXPECT_EQ(found[t].pose, expected[t].pose) << t;
+    EXPECT_EQ(found[t].spread, expected[t].spread) << t;
+    EXPECT_NEAR(found[t].pose[3], 0.6, 0.3) << t;
+  }
+}
+
+// Stopped before, among and after the frames that are exchanged, and in other passes.
+TEST_F(ExchangedClipTest, GoesOnFromWhereItWasStoppedBitForBit) {
+  for (const bool smooth : {true, false}) {
+    const TrackerOptions options = by_keypoints(smooth);
+    const std::vector<StepReport> whole = track_clip(options, clip_);
+    ASSERT_EQ(whole.size(), clip_.size());
+    for (const int stop : smooth ? std::vector<int>{5, 14, 27} : std::vector<int>{3, 5, 7, 8}) {
+      std::string state;
+      ClipResume resume{.state = {}, .keep = [&](const auto& told) { state = told(); }};
+      int asked = 0;
+      const auto stopped = track_clip(
+          options, clip_, [&](size_t, size_t) { return ++asked < stop; }, resume);
+      ASSERT_LT(stopped.size(), clip_.size()) << stop;
+      resume.state = state;
+      const auto found = track_clip(options, clip_, {}, resume);
+      ASSERT_EQ(found.size(), whole.size()) << stop;
+      for (size_t t = 0; t < found.size(); ++t) {
+        EXPECT_EQ(whole[t].exchanged > kExchanged, is_exchanged(t)) << t;
+        EXPECT_EQ(found[t].exchanged, whole[t].exchanged) << stop << ", " << t;
+        EXPECT_EQ(found[t].pose, whole[t].pose) << stop << ", " << t;
+        EXPECT_EQ(found[t].spread, whole[t].spread) << stop << ", " << t;
+        EXPECT_EQ(found[t].state, whole[t].state) << stop << ", " << t;
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -20,23 +20,26 @@
 namespace silpose {
 namespace {
 
-// The mesh that candidates are ranked by.
+// [guess] The mesh by which candidates are ranked.
 constexpr int kRankingVertices = 800, kRankingRows = 1;
-// After coasting for longer than this the subject may be anywhere: the next good mask starts over.
+// [guess] After coasting for longer than this the subject may be anywhere, and the next good mask starts over.
 constexpr double kLongestCoast_s = 1.0;
 
-// A fit worse than this may be in a wrong basin: the pose is sought anew, first soon, then less and less often.
+// [guess] A fit with a smaller overlap may be in a wrong basin. The pose is then searched for from scratch, first soon,
+// then at growing intervals.
 constexpr double kGoodAccuracy = 0.97;
-constexpr double kFirstSeek_s = 0.12, kSeekLater = 4;  // times the interval before
-// So it is where the fit gets worse than it was of late, by more than it goes up and down anyway: bad masks alone do
-// not have it sought for ever.
+constexpr double kFirstSeek_s = 0.12, kSeekLater = 4;  // times the interval before [tuned: as kSeekShare]
+// [guess] The interval is short again after the overlap falls below its recent mean, by more than its recent
+// deviations. Bad masks alone do not start a search again and again.
 constexpr double kLeastLost = 0.03, kLostDeviations = 3, kOfLate_s = 1;
-constexpr int kSeekHeadings = 3, kSeekRounds = 2, kSeekPatience = 2;  // at a time, other headings each time
-constexpr double kSeekShare = 0.5;                                    // of other limbs that are fitted finely
-// What was tracked turns no further than this (cosine of 70 degrees) when it is sought anew, unless keypoints have
-// faced elsewhere for about this long.
+// Of one search; the next has other headings. kSeekShare: of other limbs that are fitted finely. [tuned: with
+// kSeekLater, for time at about the same accuracy, docs/results.md]
+constexpr int kSeekHeadings = 3, kSeekRounds = 2, kSeekPatience = 2;
+constexpr double kSeekShare = 0.5;
+// [guess] A search turns the tracked body no further than this (cosine of 70 degrees), unless keypoints have faced
+// elsewhere for about this long.
 constexpr double kTurnedCosine = 0.34, kFacingMemory_s = 0.5;
-constexpr double kFacingKnown_s = 3;  // after the last keypoints
+constexpr double kFacingKnown_s = 3;  // [guess] after the last keypoints
 
 }  // namespace
 
@@ -98,7 +101,7 @@ struct Tracker::Impl {
     return false;
   }
 
-  // A camera whose network exchanged left and right tells nothing by its keypoints. Empty where none did.
+  // The observations without the keypoints of cameras whose network exchanged left and right. Empty where none did.
   std::vector<Observation> without_exchanged(std::span<const Observation> observations, double dt_s,
                                              double& most_exchanged) {
     std::vector<Observation> judged;
@@ -126,7 +129,7 @@ struct Tracker::Impl {
     return line.stableNormalized();
   }
 
-  // How well the estimate faces where the keypoints do, over the last frames.
+  // Tracks how well the directions agree in which the estimate and the keypoints face.
   void follow_facing(std::span<const Observation> observations, double dt_s, bool is_new) {
     const Eigen::Vector3d tracked = line_across_pose(last_pose);
     if (tracked.isZero()) return;
@@ -192,7 +195,7 @@ struct Tracker::Impl {
     name_ambiguities(report);
   }
 
-  // Where the best hypothesis fits badly, new ones from scratch compete with it.
+  // Where the best hypothesis fits badly, adds hypotheses that are found from scratch.
   void seek_anew(std::span<const Observation> observations, double dt_s, StepReport& report) {
     since_seek_s += dt_s;
     if (dt_s == 0) accuracy_of_late = report.visual_accuracy, deviation_of_late = 0;  // just started
@@ -212,7 +215,7 @@ struct Tracker::Impl {
     report.seconds.start += stopwatch.seconds();
   }
 
-  // All that goes from step to step but the filter's own.
+  // The state between steps, but for the filter's.
   static auto members(auto& t) {
     return std::tie(t.last_pose, t.started, t.num_seeks, t.seek_interval_s, t.since_seek_s, t.accuracy_of_late,
                     t.deviation_of_late, t.steps, t.last_time_ns, t.last_seen_ns, t.sides, t.facing_agreement,

@@ -7,6 +7,8 @@
 #include "silpose/base/parallel.h"
 #include "silpose/body/test_body.h"
 #include "silpose/render/silhouette.h"
+#include "silpose/track/keypoint_sides.h"
+#include "silpose/track/keypoints_for_test.h"
 
 namespace silpose {
 namespace {
@@ -142,6 +144,9 @@ TEST_P(TrackerTest, WaitsUntilSomethingIsSeenThenCoastsWithGrowingSpread) {
     EXPECT_EQ(coasted.state, StepReport::State::kCoasted);
     EXPECT_EQ(coasted.visual_accuracy, 0);
     if (t == 9) {
+      // Of the bend: 2.4 times and more with seeds 1 to 10. The place may be little less certain than it was: where the
+      // mixture holds a stray hypothesis, metres away, with hardly any weight, that alone makes most of its spread.
+      EXPECT_GT(coasted.spread[5], 1.8 * seen.spread[5]);
       EXPECT_GT(coasted.spread[0], 1.05 * seen.spread[0]);
     }
   }
@@ -247,6 +252,125 @@ TEST_P(TrackerTest, ExpectsTheBodyWhereItGoes) {
   const Observation none = nothing();
   tracker.step({&none, 1}, 8, 8 * kFrame_ns);
   EXPECT_TRUE(tracker.expected(0.03).empty());
+}
+
+// A body whose network finds keypoints.
+class KeypointTrackerTest : public ::testing::Test {
+ protected:
+  TrackerOptions options(EvidenceKind evidence) const {
+    TrackerOptions options;
+    options.body = body_;
+    options.cameras = {camera_};
+    options.landmarks = true;
+    options.evidence = evidence;
+    return options;
+  }
+  // Bent to one side, and turned.
+  static std::vector<double> truth(int t) { return {0.01 * t, 0.5, 0, 0.6, 0, 0.5, 0, 0.2}; }
+  Observation observe(const std::vector<double>& pose) const {
+    Observation observation;
+    observation.mask = render_silhouette(*body_, camera_, pose);
+    observation.box = observation.mask.bounding_box();
+    return observation;
+  }
+  Observation with_keypoints(int t, bool exchanged = false) const {
+    Observation observation = observe(truth(t));
+    add_keypoints(*body_, camera_, truth(t), observation, exchanged);
+    return observation;
+  }
+  double off(const std::vector<double>& pose, int t) const {
+    return furthest_apart(landmark_positions(*body_, pose), landmark_positions(*body_, truth(t)));
+  }
+  static StepReport step(Tracker& tracker, const Observation& observation, int t) {
+    return tracker.step({&observation, 1}, t, t * int64_t{33'333'333});
+  }
+
+  std::shared_ptr<const BodyModel> body_ = std::make_shared<BodyModel>(make_sided_body());
+  PinholeCamera camera_ = look_at_camera(320, 240, 300, {0, 1.2, 4.5}, {0, 0.75, 0});
+};
+
+// Stopped before, among and after the frames in which the network exchanges left and right.
+TEST_F(KeypointTrackerTest, GoesOnWhereSidesAreExchangedBitForBit) {
+  const auto is_exchanged = [](int t) { return t >= 4 && t <= 6; };
+  constexpr int kSteps = 10;
+  Tracker whole(options(EvidenceKind::kBoth));
+  std::vector<StepReport> expected;
+  std::vector<std::string> states;
+  for (int t = 0; t < kSteps; ++t) {
+    states.push_back(whole.state());
+    expected.push_back(step(whole, with_keypoints(t, is_exchanged(t)), t));
+    ASSERT_EQ(expected.back().exchanged > kExchanged, is_exchanged(t)) << t;
+  }
+  for (const int stop : {3, 5, 7, 8}) {
+    Tracker second(options(EvidenceKind::kBoth));
+    second.restore(states[static_cast<size_t>(stop)]);
+    for (int t = stop; t < kSteps; ++t) {
+      const StepReport found = step(second, with_keypoints(t, is_exchanged(t)), t),
+                       &whole_report = expected[static_cast<size_t>(t)];
+      EXPECT_EQ(found.exchanged, whole_report.exchanged) << stop << ", " << t;
+      EXPECT_EQ(found.pose, whole_report.pose) << stop << ", " << t;
+      EXPECT_EQ(found.spread, whole_report.spread) << stop << ", " << t;
+      EXPECT_EQ(found.visual_accuracy, whole_report.visual_accuracy) << stop << ", " << t;
+    }
+  }
+}
+
+// Masks are those of a body that is bent to the other side: they do not count.
+TEST_F(KeypointTrackerTest, TracksByKeypointsAloneAndCoastsWithoutThem) {
+  std::vector<double> other_side = truth(0);
+  for (const size_t d : {5u, 7u}) other_side[d] *= -1;
+  const Observation silhouette = observe(other_side);
+  for (const bool sampling : {false, true}) {
+    TrackerOptions of_keypoints = options(EvidenceKind::kKeypoints);
+    if (sampling) of_keypoints.num_particles = 300;
+    Tracker tracker(of_keypoints);
+    EXPECT_EQ(step(tracker, silhouette, 0).state, StepReport::State::kWaiting);
+    EXPECT_TRUE(step(tracker, silhouette, 1).pose.empty());
+    for (int t = 2; t < 12; ++t) {
+      const bool seen = t < 6 || t >= 9;
+      Observation observation = silhouette;
+      if (seen) add_keypoints(*body_, camera_, truth(t), observation);
+      const StepReport report = step(tracker, observation, t);
+      EXPECT_EQ(report.state, t == 2 ? StepReport::State::kInitialised
+                              : seen ? StepReport::State::kTracked
+                                     : StepReport::State::kCoasted)
+          << t;
+      EXPECT_LT(off(report.pose, t), 0.2) << sampling << ", " << t;
+    }
+    EXPECT_GT(furthest_apart(landmark_positions(*body_, other_side), landmark_positions(*body_, truth(0))), 0.6);
+  }
+}
+
+// Started two metres away, particles about the estimate see nothing; those about what a network recognises are there.
+// The thesis' filters make anew what concerns the pose alone: there it is the pose that starts wrong.
+TEST_F(KeypointTrackerTest, RegeneratesFromWhatTheNetworkRecognises) {
+  // Metres that the furthest joint is off after five frames. Seeds 1 to 30 gave 0.02 to 0.33 against 2.05 to 2.07, the
+  // thesis 0.01 to 0.08 against 0.42 to 1.00.
+  struct Start {
+    std::string preset;
+    std::vector<double> pose;
+    double found, lost;
+  };
+  for (const Start& start : {Start{"default", {-2, 0.5, 0, 0, 0, 0, 0, 0}, 0.5, 1.5},
+                             Start{"thesis", {0, 0.5, 0, 0.6, 0, -1, 0, -1}, 0.2, 0.3}}) {
+    for (const uint64_t seed : {1u, 2u, 3u}) {
+      const auto off_in_the_end = [&](const std::string& regenerate_from) {
+        TrackerOptions options = this->options(EvidenceKind::kSilhouette);
+        options.preset = start.preset;
+        options.num_particles = 200;
+        options.resampling = "comb";
+        options.regenerate = 0.2;
+        options.regenerate_from = regenerate_from;
+        options.seed = seed;
+        options.initial_pose = start.pose;
+        Tracker tracker(options);
+        for (int t = 0; t < 4; ++t) step(tracker, with_keypoints(t), t);
+        return off(step(tracker, with_keypoints(4), 4).pose, 4);
+      };
+      EXPECT_LT(off_in_the_end("network"), start.found) << start.preset << seed;
+      EXPECT_GT(off_in_the_end("random"), start.lost) << start.preset << seed;
+    }
+  }
 }
 
 }  // namespace
