@@ -73,7 +73,8 @@ double add_claims(const BodyModel& body, const StepReport& report, const Places&
                   Claims& claims) {
   const auto middle = middle_of_hips(places), true_middle = middle_of_hips(truth);
   const std::vector<std::string> names = landmark_names(body);
-  if (report.landmark_spread.size() != names.size() || report.spread.empty() || !middle || !true_middle) return kAbsent;
+  if (report.landmark_spread_about_root.size() != names.size() || report.spread.empty() || !middle || !true_middle)
+    return kAbsent;
   std::vector<double> errors, deviations;
   for (size_t i = 0; i < names.size(); ++i) {
     const auto true_place = truth.find(names[i]);
@@ -81,10 +82,10 @@ double add_claims(const BodyModel& body, const StepReport& report, const Places&
     const Eigen::Vector3d off = places.at(names[i]) - *middle - (true_place->second - *true_middle);
     for (int axis = 0; axis < 3; ++axis) {
       claims.coordinate_errors.push_back(off[axis]);
-      claims.coordinate_deviations.push_back(report.landmark_spread[i][axis]);
+      claims.coordinate_deviations.push_back(report.landmark_spread_about_root[i][axis]);
     }
     errors.push_back(kMmPerMetre * off.norm());
-    deviations.push_back(kMmPerMetre * report.landmark_spread[i].norm());
+    deviations.push_back(kMmPerMetre * report.landmark_spread_about_root[i].norm());
   }
   if (errors.empty()) return kAbsent;
   claims.joint_errors.insert(claims.joint_errors.end(), errors.begin(), errors.end());

@@ -29,9 +29,8 @@ inline constexpr double kWrongMm = 50;
 //   rank_correlation               of a joint's claimed deviation with its error
 //   roc_area_50mm                  of that deviation for joints off by more than kWrongMm
 //   risk_100_mm, 80, 60, 40        joint_error_root_mm over so many percent of the frames, the surest by joint_sd_mm
-// The claimed deviations are those of places in the world: where the root itself is unsure they are wider than those of
-// root-aligned places would be. Against surfaces only the frames that have one count.
-// Errors: those of evaluate_frames(). REQUIRES: a report; a camera.
+// Claimed deviations of joints are those of their places relative to the root joint. Against surfaces only the frames
+// that have one count. Errors: those of evaluate_frames(). REQUIRES: a report; a camera.
 Result<RunResult> score_clip(const ClipTruth& truth, const BodyModel& body, std::span<const PinholeCamera> cameras,
                              std::span<const StepReport> reports);
 

@@ -53,8 +53,8 @@ StepReport report_of(int frame, double more_deg, double tx, double knee_sd_deg, 
   report.time_ns = int64_t{100'000'000} * frame;
   report.pose = {tx, to_radians(kTrueBend_deg + more_deg)};
   report.spread = {0.1, to_radians(knee_sd_deg)};
-  report.landmark_spread.assign(5, Eigen::Vector3d::Constant(1e-3));
-  report.landmark_spread[3].setConstant(foot_sd_m);
+  report.landmark_spread_about_root.assign(5, Eigen::Vector3d::Constant(1e-3));
+  report.landmark_spread_about_root[3].setConstant(foot_sd_m);
   report.visual_accuracy = 0.9;
   return report;
 }
@@ -108,7 +108,7 @@ TEST(ScoreClip, FramesWithoutAPoseOrATruth) {
   std::vector<StepReport> reports = {report_of(0, 5, 0, 4, 1), report_of(1, 5, 0, 4, 1), report_of(2, 90, 0, 4, 1)};
   reports[1].pose.clear();
   reports[1].spread.clear();
-  reports[1].landmark_spread.clear();
+  reports[1].landmark_spread_about_root.clear();
   const RunResult run = score_clip(truth_of(leg, 2), leg, kCameras, reports).value();
   EXPECT_EQ(run.frames.size(), 3U);
   EXPECT_EQ(run.scores.at("frames_missing"), 1);

@@ -46,8 +46,7 @@ BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::s
                                         CoverageLikelihood::Scratch& scratch) const {
   const BodyModel& body = likelihood_->body();
   const size_t num_landmarks = static_cast<size_t>(body.skeleton.num_joints()) + body.end_points.size();
-  Variance result{std::vector<double>(pose.size(), 0.0),
-                  std::vector<Eigen::Vector3d>(num_landmarks, Eigen::Vector3d::Zero())};
+  Variance result{std::vector<double>(pose.size(), 0.0), no_landmark_variances(num_landmarks)};
   add_wrong_lengths(evidence, pose, scratch, result);
   const auto has_a_say = [](const CoverageEvidence::View& view) { return view.trust > 0; };
   if (std::ranges::count_if(evidence.views, has_a_say) == 1) {
@@ -65,7 +64,8 @@ void BodyError::add_wrong_size(const PinholeCamera& camera, std::span<const doub
   const std::vector<Eigen::Vector3d> landmarks = landmark_positions(body, stretched);
   const Eigen::Vector3d centre = camera.centre_in_world();
   for (size_t l = 0; l < landmarks.size(); ++l) {
-    result.landmarks[l] += (size_deviation_ * (landmarks[l] - centre)).cwiseAbs2();
+    result.landmarks.in_world[l] += (size_deviation_ * (landmarks[l] - centre)).cwiseAbs2();
+    result.landmarks.about_root[l] += (size_deviation_ * (landmarks[l] - landmarks.front())).cwiseAbs2();
   }
   const Eigen::Vector3d of_root = size_deviation_ * (landmarks.front() - centre);
   for (size_t d = 0; d < pose.size(); ++d) {
@@ -100,8 +100,7 @@ void BodyError::add_wrong_lengths(const CoverageEvidence& evidence, std::span<co
   covariance.topLeftCorner(D, D) += correlated_errors(evidence, stretched, hessian.topLeftCorner(D, D), rest, scratch);
   covariance *= wrong;
   for (Eigen::Index d = 0; d < D; ++d) result.dofs[static_cast<size_t>(d)] += std::max(covariance(d, d), 0.0);
-  const std::vector<Eigen::Vector3d> of_landmarks = landmark_variances(body, stretched, covariance);
-  for (size_t l = 0; l < of_landmarks.size(); ++l) result.landmarks[l] += of_landmarks[l].cwiseMax(0);
+  result.landmarks += landmark_variances(body, stretched, covariance);
 }
 
 // Covariance of a fit to one frame, whose information is reduced to what all frames together are worth. Errors that are

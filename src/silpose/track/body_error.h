@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/pose_estimate.h"
 
 namespace silpose {
 
@@ -29,8 +30,8 @@ class BodyError {
   [[nodiscard]] const CoverageLikelihood& likelihood() const { return *likelihood_; }
 
   struct Variance {
-    std::vector<double> dofs;                // [D] radians^2, metres^2
-    std::vector<Eigen::Vector3d> landmarks;  // [J + E] metres^2
+    std::vector<double> dofs;  // [D] radians^2, metres^2
+    LandmarkVariances landmarks;
   };
   // What to add to the variance of a pose [D] that was fitted to `evidence`, prepared at Blur::k4.
   [[nodiscard]] Variance variance(const CoverageEvidence& evidence, std::span<const double> pose,

@@ -56,8 +56,11 @@ TEST_F(BodyErrorTest, ASizeThatWasOnlyGuessedIsADepthThatIsUnsureHoweverWellTheO
   for (size_t d = 3; d < one.dofs.size(); ++d) EXPECT_EQ(one.dofs[d], 0) << body_->skeleton.dofs()[d].name;
   const size_t head_top = landmark_names(*body_).size() - 5;
   ASSERT_EQ(landmark_names(*body_)[head_top], "head_top");
-  EXPECT_NEAR(std::sqrt(one.landmarks[head_top].z()), 0.05 * 5, 0.02);
-  EXPECT_NEAR(std::sqrt(one.landmarks[head_top].y()), 0.05 * (body_->height_m - 1), 0.01);
+  EXPECT_NEAR(std::sqrt(one.landmarks.in_world[head_top].z()), 0.05 * 5, 0.02);
+  EXPECT_NEAR(std::sqrt(one.landmarks.in_world[head_top].y()), 0.05 * (body_->height_m - 1), 0.01);
+  const double above_root = landmark_positions(*body_, pose_)[head_top].y() - landmark_positions(*body_, pose_)[0].y();
+  EXPECT_NEAR(std::sqrt(one.landmarks.about_root[head_top].y()), 0.05 * above_root, 1e-3);
+  EXPECT_NEAR(std::sqrt(one.landmarks.about_root[head_top].z()), 0, 0.01) << "the root is as far away as the head";
   for (const double v : variance(1, {front_, side_}, 0.05).dofs) EXPECT_EQ(v, 0) << "two cameras tell the size";
 }
 

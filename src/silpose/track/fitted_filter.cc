@@ -110,12 +110,14 @@ FilterReport FittedFilter::report() {
 }
 
 std::string FittedFilter::state() const {
-  return to_bytes(mixture_.state(), noise_, sought_, from_body_.dofs, from_body_.landmarks);
+  return to_bytes(mixture_.state(), noise_, sought_, from_body_.dofs, from_body_.landmarks.in_world,
+                  from_body_.landmarks.about_root);
 }
 
 void FittedFilter::restore(std::string_view state) {
   MixtureFilter::State mixture;
-  check(from_bytes(state, mixture, noise_, sought_, from_body_.dofs, from_body_.landmarks) &&
+  check(from_bytes(state, mixture, noise_, sought_, from_body_.dofs, from_body_.landmarks.in_world,
+                   from_body_.landmarks.about_root) &&
             (noise_.empty() || noise_.size() == fine_->cameras().size()),
         "FittedFilter: not a state of it");
   mixture_.restore(std::move(mixture));
@@ -135,7 +137,7 @@ PoseSpread FittedFilter::spread() const {
   const std::vector<double> weights = particles_.weights();
   PoseSpread spread;
   spread.dofs.assign(centre.size(), 0);
-  spread.landmarks.assign(centre_landmarks.size(), Eigen::Vector3d::Zero());
+  LandmarkVariances variances = no_landmark_variances(centre_landmarks.size());
   for (size_t i = 0; i < hypotheses.size(); ++i) {
     const auto covariance = hypotheses[i].pose_covariance();
     const auto row = particles_.states.row(static_cast<Eigen::Index>(i)).head(std::ssize(centre));
@@ -147,15 +149,21 @@ PoseSpread FittedFilter::spread() const {
           weights[i] * (covariance(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(d)) + off * off);
     }
     const auto landmarks = landmark_positions(body, pose);
-    const std::vector<Eigen::Vector3d> variances = landmark_variances(body, pose, covariance);
+    const LandmarkVariances own = landmark_variances(body, pose, covariance);
+    const Eigen::Vector3d root_off = landmarks.front() - centre_landmarks.front();
     for (size_t l = 0; l < landmarks.size(); ++l) {
-      spread.landmarks[l] += weights[i] * (variances[l] + (landmarks[l] - centre_landmarks[l]).cwiseAbs2());
+      const Eigen::Vector3d off = landmarks[l] - centre_landmarks[l];
+      variances.in_world[l] += weights[i] * (own.in_world[l] + off.cwiseAbs2());
+      variances.about_root[l] += weights[i] * (own.about_root[l] + (off - root_off).cwiseAbs2());
     }
   }
   for (size_t d = 0; d < from_body_.dofs.size(); ++d) spread.dofs[d] += from_body_.dofs[d];
-  for (size_t l = 0; l < from_body_.landmarks.size(); ++l) spread.landmarks[l] += from_body_.landmarks[l];
+  variances += from_body_.landmarks;
   for (double& variance : spread.dofs) variance = std::sqrt(variance);
-  for (Eigen::Vector3d& variance : spread.landmarks) variance = variance.cwiseSqrt();
+  for (const Eigen::Vector3d& variance : variances.in_world) spread.landmarks.emplace_back(variance.cwiseSqrt());
+  for (const Eigen::Vector3d& variance : variances.about_root) {
+    spread.landmarks_about_root.emplace_back(variance.cwiseSqrt());
+  }
   return spread;
 }
 

@@ -39,16 +39,34 @@ std::vector<double> pose_estimate(const Skeleton& skeleton, const ParticleSet& p
   return pose;
 }
 
-std::vector<Eigen::Vector3d> landmark_variances(const BodyModel& body, std::span<const double> pose,
-                                                const Eigen::MatrixXd& covariance) {
+LandmarkVariances& LandmarkVariances::operator+=(const LandmarkVariances& other) {
+  for (size_t l = 0; l < other.in_world.size(); ++l) {
+    in_world[l] += other.in_world[l];
+    about_root[l] += other.about_root[l];
+  }
+  return *this;
+}
+
+LandmarkVariances no_landmark_variances(size_t count) {
+  const std::vector<Eigen::Vector3d> zero(count, Eigen::Vector3d::Zero());
+  return {zero, zero};
+}
+
+LandmarkVariances landmark_variances(const BodyModel& body, std::span<const double> pose,
+                                     const Eigen::MatrixXd& covariance) {
   const PointMotion motion(body.skeleton, pose);
   const auto landmarks = landmark_positions(body, pose);
   const size_t num_joints = motion.world_from_joint().size();
-  std::vector<Eigen::Vector3d> variances;
+  const Eigen::Matrix3Xd of_root = motion.jacobian(0, landmarks.front());
+  const auto variance = [&](const Eigen::Matrix3Xd& jacobian) -> Eigen::Vector3d {
+    return (jacobian * covariance).cwiseProduct(jacobian).rowwise().sum().cwiseMax(0);
+  };
+  LandmarkVariances variances;
   for (size_t l = 0; l < landmarks.size(); ++l) {
     const int joint = l < num_joints ? static_cast<int>(l) : body.end_points[l - num_joints].joint_idx;
     const Eigen::Matrix3Xd jacobian = motion.jacobian(joint, landmarks[l]);
-    variances.emplace_back((jacobian * covariance).cwiseProduct(jacobian).rowwise().sum());
+    variances.in_world.push_back(variance(jacobian));
+    variances.about_root.push_back(variance(jacobian - of_root));
   }
   return variances;
 }

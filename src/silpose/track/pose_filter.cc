@@ -28,9 +28,8 @@ std::vector<bool> dofs_where(const Skeleton& skeleton, Predicate predicate) {
   return free;
 }
 
-// Standard deviation of each landmark's coordinates over the particles. [J + E]
-std::vector<Eigen::Vector3d> landmark_spread(const BodyModel& body, const ParticleSet& particles) {
-  const size_t num_landmarks = static_cast<size_t>(body.skeleton.num_joints()) + body.end_points.size();
+// The landmarks [J + E] of each particle. [N]
+std::vector<std::vector<Eigen::Vector3d>> landmarks_of(const BodyModel& body, const ParticleSet& particles) {
   const auto num_dofs = static_cast<size_t>(body.skeleton.num_dofs());
   const auto N = static_cast<size_t>(particles.size());
   std::vector<std::vector<Eigen::Vector3d>> positions(N);
@@ -39,21 +38,35 @@ std::vector<Eigen::Vector3d> landmark_spread(const BodyModel& body, const Partic
       positions[n] = landmark_positions(body, {particles.states.row(static_cast<Eigen::Index>(n)).data(), num_dofs});
     }
   });
-  const std::vector<double> weights = particles.weights();
-  std::vector<Eigen::Vector3d> spread(num_landmarks, Eigen::Vector3d::Zero());
-  for (size_t l = 0; l < num_landmarks; ++l) {
+  return positions;
+}
+
+// Standard deviation of each coordinate over the particles. Shapes: positions [N][L] -> [L]
+std::vector<Eigen::Vector3d> deviations_of(const std::vector<std::vector<Eigen::Vector3d>>& positions,
+                                           std::span<const double> weights) {
+  std::vector<Eigen::Vector3d> deviations;
+  for (size_t l = 0; l < positions.front().size(); ++l) {
     Eigen::Vector3d mean = Eigen::Vector3d::Zero(), variance = Eigen::Vector3d::Zero();
-    for (size_t n = 0; n < N; ++n) mean += weights[n] * positions[n][l];
-    for (size_t n = 0; n < N; ++n) variance += weights[n] * (positions[n][l] - mean).cwiseAbs2();
-    spread[l] = variance.cwiseSqrt();
+    for (size_t n = 0; n < positions.size(); ++n) mean += weights[n] * positions[n][l];
+    for (size_t n = 0; n < positions.size(); ++n) variance += weights[n] * (positions[n][l] - mean).cwiseAbs2();
+    deviations.emplace_back(variance.cwiseSqrt());
   }
-  return spread;
+  return deviations;
 }
 
 PoseSpread spread_of(const BodyModel& body, const ParticleSet& particles) {
   const StateBatch poses = particles.states.leftCols(body.skeleton.num_dofs());
-  return {weighted_deviation(poses, particles.weights(), periodic_dofs(body.skeleton)),
-          landmark_spread(body, particles)};
+  const std::vector<double> weights = particles.weights();
+  std::vector<std::vector<Eigen::Vector3d>> positions = landmarks_of(body, particles);
+  PoseSpread spread{.dofs = weighted_deviation(poses, weights, periodic_dofs(body.skeleton)),
+                    .landmarks = deviations_of(positions, weights),
+                    .landmarks_about_root = {}};
+  for (std::vector<Eigen::Vector3d>& of_particle : positions) {
+    const Eigen::Vector3d root = of_particle.front();
+    for (Eigen::Vector3d& position : of_particle) position -= root;
+  }
+  spread.landmarks_about_root = deviations_of(positions, weights);
+  return spread;
 }
 
 LikelihoodOptions likelihood_options(const TrackerOptions& options) {

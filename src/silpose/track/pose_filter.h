@@ -26,8 +26,9 @@ namespace silpose {
 
 // Standard deviations about an estimate.
 struct PoseSpread {
-  std::vector<double> dofs;                // [D] radians, metres
-  std::vector<Eigen::Vector3d> landmarks;  // [J + E] metres, as body's landmark_positions
+  std::vector<double> dofs;                           // [D] radians, metres
+  std::vector<Eigen::Vector3d> landmarks;             // [J + E] metres, as body's landmark_positions
+  std::vector<Eigen::Vector3d> landmarks_about_root;  // [J + E] of their places relative to the root joint
 };
 
 class PoseFilter {

@@ -23,10 +23,11 @@ struct StepReport {
   int64_t frame_idx = 0;
   int64_t time_ns = 0;
   enum class State { kWaiting, kInitialised, kTracked, kCoasted } state = State::kWaiting;
-  std::vector<double> pose;                      // [D] the estimate (empty while waiting)
-  std::vector<double> mode;                      // [D] the best particle
-  std::vector<double> spread;                    // [D] weighted standard deviation
-  std::vector<Eigen::Vector3d> landmark_spread;  // [J + E] metres, as body's landmark_positions
+  std::vector<double> pose;                                 // [D] the estimate (empty while waiting)
+  std::vector<double> mode;                                 // [D] the best particle
+  std::vector<double> spread;                               // [D] weighted standard deviation
+  std::vector<Eigen::Vector3d> landmark_spread;             // [J + E] metres, as body's landmark_positions
+  std::vector<Eigen::Vector3d> landmark_spread_about_root;  // [J + E] of their places relative to the root joint
   double effective_sample_size = 0;
   double visual_accuracy = 0;  // intersection over union in the first camera's image; 0 when coasted
   // What is open: the probability that the network exchanged left and right (of the camera where it is highest), and
@@ -40,7 +41,8 @@ struct StepReport {
   // For to_bytes(): all but the masks.
   static auto members(auto& r) {
     return std::tie(r.frame_idx, r.time_ns, r.state, r.pose, r.mode, r.spread, r.landmark_spread,
-                    r.effective_sample_size, r.visual_accuracy, r.exchanged, r.turned, r.crossed, r.trust, r.seconds);
+                    r.landmark_spread_about_root, r.effective_sample_size, r.visual_accuracy, r.exchanged, r.turned,
+                    r.crossed, r.trust, r.seconds);
   }
 };
 

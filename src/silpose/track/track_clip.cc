@@ -313,7 +313,7 @@ class ClipTracker {
   // by how well they fit. The spread is wide where the passes disagree and the evidence does not decide.
   void add_disagreement(size_t t, const CoverageEvidence& evidence, const StepReport& report,
                         CoverageLikelihood::Scratch& scratch, std::vector<double>& variance,
-                        std::vector<Eigen::Vector3d>& landmark_variance) const {
+                        LandmarkVariances& landmark_variance) const {
     const BodyModel& body = *options_.body;
     const Possible& possible = possible_[t];
     const double own = likelihood_->energy(evidence, Blur::k4, report.pose, scratch);
@@ -335,7 +335,11 @@ class ClipTracker {
         variance[d] += weight * off * off;
       }
       const auto x = landmark_positions(body, view(pose));
-      for (size_t l = 0; l < x.size(); ++l) landmark_variance[l] += weight * (x[l] - landmarks[l]).cwiseAbs2();
+      for (size_t l = 0; l < x.size(); ++l) {
+        const Eigen::Vector3d off = x[l] - landmarks[l], root_off = x.front() - landmarks.front();
+        landmark_variance.in_world[l] += weight * off.cwiseAbs2();
+        landmark_variance.about_root[l] += weight * (off - root_off).cwiseAbs2();
+      }
     }
   }
 
@@ -369,16 +373,19 @@ class ClipTracker {
         report.mode = report.pose;
         const VectorXd of_fit = smoothed.covariances[i].diagonal();
         std::vector<double> variance(of_fit.begin(), of_fit.end());
-        std::vector<Eigen::Vector3d> of_landmarks = landmark_variances(body, report.pose, smoothed.covariances[i]);
+        LandmarkVariances of_landmarks = landmark_variances(body, report.pose, smoothed.covariances[i]);
         if (seen_[first_ + i]) {
           const CoverageEvidence evidence = evidence_at(first_ + i);
           add_disagreement(first_ + i, evidence, report, scratch, variance, of_landmarks);
           const auto from_body = body_error.variance(evidence, report.pose, of_stretched);
           for (size_t d = 0; d < variance.size(); ++d) variance[d] += from_body.dofs[d];
-          for (size_t l = 0; l < of_landmarks.size(); ++l) of_landmarks[l] += from_body.landmarks[l];
+          of_landmarks += from_body.landmarks;
         }
         for (const double v : variance) report.spread.push_back(std::sqrt(std::max(v, 0.0)));
-        for (const Eigen::Vector3d& v : of_landmarks) report.landmark_spread.emplace_back(v.cwiseMax(0).cwiseSqrt());
+        for (const Eigen::Vector3d& v : of_landmarks.in_world) report.landmark_spread.emplace_back(v.cwiseSqrt());
+        for (const Eigen::Vector3d& v : of_landmarks.about_root) {
+          report.landmark_spread_about_root.emplace_back(v.cwiseSqrt());
+        }
         report.effective_sample_size = 1;
         report.state = i == 0              ? StepReport::State::kInitialised
                        : seen_[first_ + i] ? StepReport::State::kTracked

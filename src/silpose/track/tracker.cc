@@ -188,6 +188,7 @@ struct Tracker::Impl {
     PoseSpread spread = filter->spread();
     report.spread = std::move(spread.dofs);
     report.landmark_spread = std::move(spread.landmarks);
+    report.landmark_spread_about_root = std::move(spread.landmarks_about_root);
     if (report.state != StepReport::State::kCoasted) {
       report.visual_accuracy = visual_accuracy(seen_by, observations, report.pose);
     }

@@ -116,6 +116,7 @@ TEST_P(TrackerTest, GoesOnFromItsStateBitForBit) {
       EXPECT_EQ(found.mode, whole_report.mode) << t;
       EXPECT_EQ(found.spread, whole_report.spread) << t;
       EXPECT_EQ(found.landmark_spread, whole_report.landmark_spread) << t;
+      EXPECT_EQ(found.landmark_spread_about_root, whole_report.landmark_spread_about_root) << t;
       EXPECT_EQ(found.effective_sample_size, whole_report.effective_sample_size) << t;
     }
     if (stop > 1) {
