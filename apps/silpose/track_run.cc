@@ -247,7 +247,8 @@ class TrackRun {
       return saved_ && console_.update("tracking", static_cast<int64_t>(done), static_cast<int64_t>(total));
     };
     std::vector<StepReport> reports = track_clip(tracker_options_, clip_, progress, clip_resume());
-    if (!saved_) return saved_;
+    // What there is of them is done again, from the state that was kept.
+    if (!saved_ || (Console::interrupted() && reports.size() < clip_.size())) return saved_;
     double told_s = 0;
     for (StepReport& report : reports) {
       const StepSeconds& of_step = report.seconds;
@@ -255,7 +256,7 @@ class TrackRun {
       if (Result<void> recorded = record(std::move(report)); !recorded) return recorded;
     }
     now_.seconds.smooth += smoothing_.restart() - told_s;
-    return Console::interrupted() && reports.empty() ? Result<void>() : save({});
+    return save({});
   }
 
   // From here on the body is the subject's, as far as the clip tells it.

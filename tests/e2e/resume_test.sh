@@ -74,6 +74,16 @@ stop INT pair_again checkpoint.bin "${pair[@]}"
 "$silpose" track "${pair[@]}" --resume --out pair_again --quiet || fail "--resume of a fitted body: exit $?"
 same pair_whole pair_again "${tables[@]}" fitted.body
 
+# The same without smoothing: stopped in the second pass, as soon as the fit is done.
+pair=("${pair[@]}" --no-smooth --fit-body)
+"$silpose" track "${pair[@]}" --out pair_online --quiet
+for wait in 0.4 0.6 0.8 1.0; do  # seconds; whichever pass that is in
+  rm -rf pair_online_again pair_online_again.partial
+  timeout --signal=INT "$wait" "$silpose" track "${pair[@]}" --out pair_online_again --quiet 2>/dev/null && break
+  "$silpose" track "${pair[@]}" --resume --out pair_online_again --quiet || fail "--resume after $wait s: exit $?"
+  same pair_online pair_online_again "${tables[@]}" fitted.body
+done
+
 # A sampling filter, and a background that is learned on and on.
 sampling=(truth/video.mp4 --background online --camera truth/camera.toml --particles 300 --layers 4)
 "$silpose" track "${sampling[@]}" --out sampled --quiet
@@ -117,7 +127,7 @@ truncate -s -100 kept.partial/checkpoint.bin
 damaged 'checkpoint.bin: truncated; without --resume'
 cp whole.bin kept.partial/checkpoint.bin
 printf '\x07' | dd of=kept.partial/checkpoint.bin bs=1 seek=8 conv=notrunc status=none
-damaged 'checkpoint of silpose track of version 7, not 2'
+damaged 'checkpoint of silpose track of version 7, not 3'
 cp whole.bin kept.partial/checkpoint.bin
 printf 'x' | dd of=kept.partial/checkpoint.bin bs=1 seek=500 conv=notrunc status=none
 damaged 'damaged'
