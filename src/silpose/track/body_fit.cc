@@ -35,7 +35,7 @@ constexpr int kVertices = 3000;        // of the mesh that is compared
 constexpr double kRestWeight = 0.2;    // plausibility.h
 constexpr double kMaxRotation = 0.35;  // radians a step
 // Errors of masks and networks are much alike in all instants: more instants than these tell no more of the lengths.
-// [tuned: a simulation like experiment human-proportions with other people, keypoints and masks; 2 and 4 were alike, 1
+// [tuned: a simulation like experiment human-proportions with other people, keypoints and masks; 1, 2 and 4 were alike, 8
 // and 16 worse]
 constexpr double kIndependentInstants = 4;
 constexpr double kStature = 0.01;  // deviation, relative, of a stature that is given: shoes, posture [guess]
