@@ -65,9 +65,8 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
   warnings.insert(warnings.end(), of_input.begin(), of_input.end());
   if (fit->lengths.empty()) {
     warnings.emplace_back(
-        "one camera without keypoints tells the size of a subject on the floor, and neither proportions nor girths; "
-        "two "
-        "or more do, or --segmenter learned");
+        "one camera without keypoints tells the size of a subject on the floor, and neither bones nor girths; "
+        "--segmenter learned finds keypoints, and two cameras need none");
   }
   for (const std::string& warning : warnings) console.warning(warning);
   Result<Outcome> outcome = write_model(*fit->body, options.out);

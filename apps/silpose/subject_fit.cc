@@ -15,8 +15,9 @@ std::vector<std::vector<double>> poses_as_given(const TrackerOptions& tracker, s
     return console.update("tracking the body as given", static_cast<int64_t>(done), static_cast<int64_t>(total));
   };
   std::vector<std::vector<double>> poses;
-  for (const StepReport& report : track_clip(options_before_fit(tracker), clip, progress, resume))
+  for (const StepReport& report : track_clip(options_before_fit(tracker), clip, progress, resume)) {
     poses.push_back(report.pose);
+  }
   return poses;
 }
 

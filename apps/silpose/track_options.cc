@@ -164,9 +164,8 @@ bool fits_body(const TrackOptions& options, bool finds_landmarks) {
       options.evidence != "landmarks" && (!one_camera || (options.evidence == "both" && finds_landmarks));
   if (options.fit_body.value_or(false) && !tells_bones && !options.camera.has_file()) {
     throw UsageError(
-        "--fit-body: one camera tells a body's size by a floor, which --camera gives, and its bones by keypoints, "
-        "which "
-        "--segmenter learned finds");
+        "--fit-body: one camera tells a body's bones by keypoints, which --segmenter learned finds, and its size by a "
+        "floor, which --camera gives");
   }
   const TrackerOptions resolved = options.tracker.resolved();
   return options.fit_body.value_or(options.tracker.preset == "accurate" && resolved.num_hypotheses &&

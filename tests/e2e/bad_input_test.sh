@@ -23,7 +23,7 @@ expect_failure 2 'smooth.*thesis' "${fitted[@]}" --smooth --preset thesis
 expect_failure 2 'floor.*layers' "${fitted[@]}" --floor --layers 2
 expect_failure 2 'smooth.*camera:0 is live' track camera:0 --out result --smooth
 expect_failure 2 'fit-body.*layers' "${fitted[@]}" --fit-body --layers 2
-expect_failure 2 'fit-body.*camera.*learned' "${fitted[@]}" --fit-body
+expect_failure 2 'fit-body.*learned.*--camera' "${fitted[@]}" --fit-body
 expect_failure 2 'fit-body.*landmarks' "${fitted[@]}" --fit-body --evidence landmarks
 expect_failure 2 'fit-body.*camera:0 is live' track camera:0 --out result --fit-body
 expect_failure 2 'fit-body.*camera' "${fitted[@]}" --fit-body --smooth

@@ -252,7 +252,11 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
     Result<std::vector<Mask>> masks = masks_of(seen.sequence, static_cast<int>(c), settings, seed);
     if (!masks) return masks.failure();
     std::optional<SimulatedKeypoints> network;
-    if (settings.keypoints) network.emplace(seen.sequence, static_cast<int>(c), seed);
+    try {
+      if (settings.keypoints) network.emplace(seen.sequence, static_cast<int>(c), seed);
+    } catch (const std::invalid_argument& wrong) {
+      return error("keypoints: model {}: {}", settings.model, wrong.what());
+    }
     for (size_t t = 0; t < masks->size(); ++t) {
       Observation observation = observation_of(std::move((*masks)[t]));
       if (network && !observation.trust.nothing_found) {
