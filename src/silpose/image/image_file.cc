@@ -33,7 +33,7 @@ bool is_cut_off(std::string_view bytes) {
 }
 
 // Width and height, of a format whose header is easily read: so that a huge picture is refused before it takes memory.
-std::optional<std::pair<uint64_t, uint64_t>> size_told(std::string_view bytes) {
+std::optional<std::pair<uint64_t, uint64_t>> size_in_header(std::string_view bytes) {
   const auto number = [&](size_t at, size_t length) {
     uint64_t value = 0;
     for (size_t i = 0; i < length; ++i) value = value << 8 | static_cast<uint8_t>(bytes[at + i]);
@@ -64,8 +64,8 @@ Result<cv::Mat> decode(const std::filesystem::path& path, int flags) {
     return error("{}: {}x{} are more pixels than the {} that can be handled", path.string(), width, height,
                  kMostPixels);
   };
-  const auto told = size_told(bytes);
-  if (told && told->first * told->second > kMostPixels) return too_large(told->first, told->second);
+  const auto size = size_in_header(bytes);
+  if (size && size->first * size->second > kMostPixels) return too_large(size->first, size->second);
   cv::Mat decoded;
   try {
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data()));

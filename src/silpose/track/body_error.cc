@@ -48,8 +48,8 @@ BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::s
   const size_t num_landmarks = static_cast<size_t>(body.skeleton.num_joints()) + body.end_points.size();
   Variance result{std::vector<double>(pose.size(), 0.0), no_landmark_variances(num_landmarks)};
   add_wrong_lengths(evidence, pose, scratch, result);
-  const auto has_a_say = [](const CoverageEvidence::View& view) { return view.trust > 0; };
-  if (std::ranges::count_if(evidence.views, has_a_say) == 1) {
+  const auto is_usable = [](const CoverageEvidence::View& view) { return view.trust > 0; };
+  if (std::ranges::count_if(evidence.views, is_usable) == 1) {
     add_wrong_size(likelihood_->cameras()[*evidence.first_seen()], pose, result);
   }
   return result;

@@ -35,8 +35,8 @@ constexpr int kVertices = 3000;        // of the mesh that is compared
 constexpr double kRestWeight = 0.2;    // plausibility.h
 constexpr double kMaxRotation = 0.35;  // radians a step
 // Errors of masks and networks are much alike in all instants: more instants than these tell no more of the lengths.
-// [tuned: a simulation like experiment human-proportions with other people, keypoints and masks; 1, 2 and 4 were alike, 8
-// and 16 worse]
+// [tuned: a simulation like experiment human-proportions with other people, keypoints and masks; 1, 2 and 4 were alike,
+// 8 and 16 worse]
 constexpr double kIndependentInstants = 4;
 constexpr double kStature = 0.01;  // deviation, relative, of a stature that is given: shoes, posture [guess]
 // What a size by the floor may be off, of itself: as far as rendered subjects were (docs/results.md).
@@ -235,7 +235,7 @@ std::vector<size_t> telling_instants(std::span<const ClipInstant> clip, std::spa
   std::vector<size_t> usable;
   if (num_cameras > 1) {
     for (size_t t = 0; t < clip.size(); ++t) {
-      if (!poses[t].empty() && std::ranges::count_if(clip[t].observations, has_a_say) >= 2) usable.push_back(t);
+      if (!poses[t].empty() && std::ranges::count_if(clip[t].observations, is_usable) >= 2) usable.push_back(t);
     }
     return usable;
   }
@@ -249,7 +249,7 @@ std::vector<size_t> telling_instants(std::span<const ClipInstant> clip, std::spa
   const std::vector<double> exchanged = exchanged_sides(keypoints, times_ns);
   for (size_t t = 0; t < clip.size(); ++t) {
     const Observation& seen = clip[t].observations.front();
-    if (!poses[t].empty() && has_a_say(seen) && line_across(seen.keypoints) && exchanged[t] <= kExchanged) {
+    if (!poses[t].empty() && is_usable(seen) && line_across(seen.keypoints) && exchanged[t] <= kExchanged) {
       usable.push_back(t);
     }
   }

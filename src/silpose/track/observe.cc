@@ -27,11 +27,11 @@ Observation observation_from(Segmentation segmentation) {
   return observation;
 }
 
-bool has_a_say(const Observation& observation) {
+bool is_usable(const Observation& observation) {
   return !observation.trust.nothing_found && !observation.box.empty() && observation.trust.overall >= kLeastTrust;
 }
 
-bool any_has_a_say(std::span<const Observation> observations) { return std::ranges::any_of(observations, has_a_say); }
+bool any_is_usable(std::span<const Observation> observations) { return std::ranges::any_of(observations, is_usable); }
 
 double visual_accuracy(std::span<const BatchRenderer> renderers, std::span<const Observation> observations,
                        std::span<const double> pose) {

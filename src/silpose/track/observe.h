@@ -19,8 +19,8 @@ Observation observation_from(Segmentation segmentation);
 inline constexpr double kLeastTrust = 0.3;
 
 // Whether any camera saw something that is trusted enough to track by.
-bool has_a_say(const Observation& observation);
-bool any_has_a_say(std::span<const Observation> observations);
+bool is_usable(const Observation& observation);
+bool any_is_usable(std::span<const Observation> observations);
 
 // Intersection over union of a pose's silhouette and the mask of the first camera that found something; 0 without one.
 // Shapes: a renderer of the body and an observation a camera.

@@ -105,7 +105,7 @@ class ClipTracker {
         possible_(clip.size()),
         seen_(clip.size()) {
     options_.check();
-    for (size_t t = 0; t < clip.size(); ++t) seen_[t] = any_has_a_say(clip[t].observations);
+    for (size_t t = 0; t < clip.size(); ++t) seen_[t] = any_is_usable(clip[t].observations);
     const auto body = level_of_detail(options_.body, *options_.lod_vertices);
     likelihood_ = std::make_shared<const CoverageLikelihood>(body, options_.cameras);
     plausibility_ = std::make_shared<const Plausibility>(body, *options_.floor);
@@ -130,12 +130,12 @@ class ClipTracker {
     // another missed.
     const size_t ends[kNumPasses][2] = {{start_, last_}, {last_, first_}, {first_, last_}};
     while (pass_ < kNumPasses && !stopped_) pass(ends[pass_][0], ends[pass_][1]);
-    if (stopped_) return tell_and_stop();
+    if (stopped_) return report_and_stop();
     const SmoothedPoses smoothed = smooth_poses(
         *likelihood_, *plausibility_, clip_.instants().subspan(first_, last_ - first_ + 1),
         {seen_.begin() + static_cast<ptrdiff_t>(first_), seen_.begin() + static_cast<ptrdiff_t>(last_) + 1},
         best_path(), {.evidence = options_.evidence, .noise = noise_}, [&] { return proceed(); });
-    if (stopped_) return tell_and_stop();
+    if (stopped_) return report_and_stop();
     noise_ = smoothed.noise;
     return reports(smoothed);
   }
@@ -231,7 +231,7 @@ class ClipTracker {
   void tell() const {
     if (resume_.keep) resume_.keep([this] { return state(); });
   }
-  std::vector<StepReport> tell_and_stop() const {
+  std::vector<StepReport> report_and_stop() const {
     tell();
     return {};
   }

@@ -28,14 +28,15 @@ constexpr double kLongestCoast_s = 1.0;
 // [guess] A fit with a smaller overlap may be in a wrong basin. The pose is then searched for from scratch, first soon,
 // then at growing intervals.
 constexpr double kGoodAccuracy = 0.97;
-constexpr double kFirstSeek_s = 0.12, kSeekLater = 4;  // times the interval before [tuned: as kSeekShare]
+constexpr double kFirstReinitialise_s = 0.12;
+constexpr double kReinitialiseLater = 4;  // times the interval before [tuned: as kReinitialiseShare]
 // [guess] The interval is short again after the overlap falls below its recent mean, by more than its recent
 // deviations. Bad masks alone do not start a search again and again.
-constexpr double kLeastLost = 0.03, kLostDeviations = 3, kOfLate_s = 1;
-// Of one search; the next has other headings. kSeekShare: of other limbs that are fitted finely. [tuned: with
-// kSeekLater, for time at about the same accuracy, docs/results.md]
-constexpr int kSeekHeadings = 3, kSeekRounds = 2, kSeekPatience = 2;
-constexpr double kSeekShare = 0.5;
+constexpr double kLeastLost = 0.03, kLostDeviations = 3, kRecent_s = 1;
+// Of one search; the next has other headings. kReinitialiseShare: of other limbs that are fitted finely. [tuned: with
+// kReinitialiseLater, for time at about the same accuracy, docs/results.md]
+constexpr int kReinitialiseHeadings = 3, kReinitialiseRounds = 2, kReinitialisePatience = 2;
+constexpr double kReinitialiseShare = 0.5;
 // [guess] A search turns the tracked body no further than this (cosine of 70 degrees), unless keypoints have faced
 // elsewhere for about this long.
 constexpr double kTurnedCosine = 0.34, kFacingMemory_s = 0.5;
@@ -79,21 +80,21 @@ struct Tracker::Impl {
     InitialisationOptions search{.seed = options.seed + static_cast<uint64_t>(steps),
                                  .evidence = start_evidence(options)};
     if (started) {
-      search.num_headings = kSeekHeadings;
-      search.num_rounds = kSeekRounds;
-      search.patience = kSeekPatience;
-      if (num_seeks % 2 == 1) search.num_distant_rounds = 0;  // every other time
-      search.share_fitted_finely = kSeekShare;
-      search.first_heading = kSeekHeadings * num_seeks;
+      search.num_headings = kReinitialiseHeadings;
+      search.num_rounds = kReinitialiseRounds;
+      search.patience = kReinitialisePatience;
+      if (num_reinitialisations % 2 == 1) search.num_distant_rounds = 0;  // every other time
+      search.share_fitted_finely = kReinitialiseShare;
+      search.first_heading = kReinitialiseHeadings * num_reinitialisations;
     }
     return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, search);
   }
 
   // Whether any camera has something to track by.
   bool any_is_usable(std::span<const Observation> observations) const {
-    if (options.evidence != EvidenceKind::kKeypoints) return any_has_a_say(observations);
+    if (options.evidence != EvidenceKind::kKeypoints) return any_is_usable(observations);
     for (size_t c = 0; c < observations.size(); ++c) {
-      if (has_a_say(observations[c]) &&
+      if (is_usable(observations[c]) &&
           make_keypoint_term(*options.body, options.cameras[c], observations[c], options.evidence)) {
         return true;
       }
@@ -197,30 +198,32 @@ struct Tracker::Impl {
   }
 
   // Where the best hypothesis fits badly, adds hypotheses that are found from scratch.
-  void seek_anew(std::span<const Observation> observations, double dt_s, StepReport& report) {
-    since_seek_s += dt_s;
-    if (dt_s == 0) accuracy_of_late = report.visual_accuracy, deviation_of_late = 0;  // just started
-    const double lost = accuracy_of_late - report.visual_accuracy;
-    if (lost > std::max(kLeastLost, kLostDeviations * deviation_of_late)) seek_interval_s = kFirstSeek_s;
-    const double share = std::min(dt_s / kOfLate_s, 1.0);
-    deviation_of_late += share * (std::abs(lost) - deviation_of_late);
-    accuracy_of_late -= share * lost;
-    if (!options.num_hypotheses || report.visual_accuracy >= kGoodAccuracy || since_seek_s < seek_interval_s) return;
+  void reinitialise(std::span<const Observation> observations, double dt_s, StepReport& report) {
+    since_reinitialised_s += dt_s;
+    if (dt_s == 0) recent_accuracy = report.visual_accuracy, recent_deviation = 0;  // just started
+    const double lost = recent_accuracy - report.visual_accuracy;
+    if (lost > std::max(kLeastLost, kLostDeviations * recent_deviation)) reinitialise_interval_s = kFirstReinitialise_s;
+    const double share = std::min(dt_s / kRecent_s, 1.0);
+    recent_deviation += share * (std::abs(lost) - recent_deviation);
+    recent_accuracy -= share * lost;
+    if (!options.num_hypotheses || report.visual_accuracy >= kGoodAccuracy ||
+        since_reinitialised_s < reinitialise_interval_s)
+      return;
     const Stopwatch stopwatch;
     std::vector<StartingPose> found = starting_poses(observations);
     std::erase_if(found, [&](const StartingPose& start) { return is_turned(start); });
     if (!found.empty()) filter->add(found);
-    ++num_seeks;
-    since_seek_s = 0;
-    seek_interval_s *= kSeekLater;
+    ++num_reinitialisations;
+    since_reinitialised_s = 0;
+    reinitialise_interval_s *= kReinitialiseLater;
     report.seconds.start += stopwatch.seconds();
   }
 
   // The state between steps, but for the filter's.
   static auto members(auto& t) {
-    return std::tie(t.last_pose, t.started, t.num_seeks, t.seek_interval_s, t.since_seek_s, t.accuracy_of_late,
-                    t.deviation_of_late, t.steps, t.last_time_ns, t.last_seen_ns, t.sides, t.facing_agreement,
-                    t.since_facing_s);
+    return std::tie(t.last_pose, t.started, t.num_reinitialisations, t.reinitialise_interval_s, t.since_reinitialised_s,
+                    t.recent_accuracy, t.recent_deviation, t.steps, t.last_time_ns, t.last_seen_ns, t.sides,
+                    t.facing_agreement, t.since_facing_s);
   }
 
   TrackerOptions options;
@@ -231,8 +234,9 @@ struct Tracker::Impl {
   std::vector<std::unique_ptr<Segmenter>> segmenters;      // online, one a camera; made when first needed
   std::vector<double> last_pose;
   bool started = false;
-  int num_seeks = 0;
-  double seek_interval_s = kFirstSeek_s, since_seek_s = 0, accuracy_of_late = 0, deviation_of_late = 0;
+  int num_reinitialisations = 0;
+  double reinitialise_interval_s = kFirstReinitialise_s, since_reinitialised_s = 0, recent_accuracy = 0,
+         recent_deviation = 0;
   int64_t steps = 0, last_time_ns = 0, last_seen_ns = 0;
   std::vector<KeypointSides> sides;  // [C]
   double facing_agreement = 1;       // cosine between where the estimate and the keypoints face
@@ -265,8 +269,8 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
     const Stopwatch stopwatch;
     t.filter->start(t.starting_poses(observations));
     t.started = true;
-    t.seek_interval_s = kFirstSeek_s;
-    t.since_seek_s = 0;
+    t.reinitialise_interval_s = kFirstReinitialise_s;
+    t.since_reinitialised_s = 0;
     report.state = StepReport::State::kInitialised;
     report.seconds.start += stopwatch.seconds();
     report.effective_sample_size = t.filter->step(observations, 0, report.seconds).effective_sample_size;
@@ -280,7 +284,7 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
   if (t.started) t.summarise(observations, report);
   const bool is_new = report.state == StepReport::State::kInitialised;
   if (t.started && seen) t.follow_facing(observations, dt_s, is_new);
-  if (t.started && seen) t.seek_anew(observations, is_new ? 0 : dt_s, report);
+  if (t.started && seen) t.reinitialise(observations, is_new ? 0 : dt_s, report);
 
   ++t.steps;
   t.last_time_ns = time_ns;
