@@ -90,8 +90,8 @@ struct Tracker::Impl {
     return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, search);
   }
 
-  // Whether any camera has something to track by.
-  bool any_is_usable(std::span<const Observation> observations) const {
+  // Whether any camera shows something to track by, of the kind of evidence that is used.
+  bool has_evidence(std::span<const Observation> observations) const {
     if (options.evidence != EvidenceKind::kKeypoints) return any_is_usable(observations);
     for (size_t c = 0; c < observations.size(); ++c) {
       if (is_usable(observations[c]) &&
@@ -262,7 +262,7 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
   const double dt_s = t.steps == 0 ? 0 : static_cast<double>(time_ns - t.last_time_ns) * 1e-9;
   const std::vector<Observation> judged = t.without_exchanged(given, dt_s, report.exchanged);
   const std::span<const Observation> observations = judged.empty() ? given : std::span(judged);
-  const bool seen = t.any_is_usable(observations);
+  const bool seen = t.has_evidence(observations);
   if (seen && t.started && static_cast<double>(time_ns - t.last_seen_ns) * 1e-9 > kLongestCoast_s) t.started = false;
 
   if (seen && !t.started) {
