@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
@@ -26,7 +26,7 @@ TEST(Girth, MakesATubeThickerAndNoLonger) {
 }
 
 TEST(Girth, OfAHumanAreOneForBothSidesAndLeaveOtherBonesAlone) {
-  const BodyModel human = build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value();
+  const BodyModel& human = *human_for_test();
   const Girths of_human(human);
   const std::vector<std::string>& names = of_human.names();
   const auto thigh = std::ranges::find(names, "thigh");

@@ -6,15 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 
 namespace silpose {
 namespace {
 
-const BodyModel& human() {
-  static const BodyModel body = build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value();
-  return body;
-}
+const BodyModel& human() { return *human_for_test(); }
 
 TEST(Stretchable, IsTheSameBodyWhereLengthsAreZero) {
   const BodyModel stretched = stretchable(human());

@@ -7,9 +7,11 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "silpose/image/image_file.h"
@@ -84,26 +86,27 @@ SyntheticSequence reaching_person(double heading_deg) {
   return make_sequence(body, {.poses = {pose}}, {.width = 480, .height = 360, .focal_px = 520}).value();
 }
 
-// Turned a quarter clockwise as one sees it.
-ByteImage rolled(const ByteImage& image) {
-  ByteImage turned(image.height(), image.width(), 3);
+// Every pixel (x, y) where `place` says.
+ByteImage moved(const ByteImage& image, int width, int height,
+                const std::function<std::pair<int, int>(int, int)>& place) {
+  ByteImage out(width, height, 3);
   for (int y = 0; y < image.height(); ++y) {
     for (int x = 0; x < image.width(); ++x) {
-      for (int c = 0; c < 3; ++c) turned.at(image.height() - 1 - y, x, c) = image.at(x, y, c);
+      const auto [to_x, to_y] = place(x, y);
+      for (int c = 0; c < 3; ++c) out.at(to_x, to_y, c) = image.at(x, y, c);
     }
   }
-  return turned;
+  return out;
 }
 
-// As in a mirror.
+// A quarter turn clockwise.
+ByteImage rolled(const ByteImage& image) {
+  return moved(image, image.height(), image.width(),
+               [&](int x, int y) { return std::pair(image.height() - 1 - y, x); });
+}
+
 ByteImage mirrored(const ByteImage& image) {
-  ByteImage other(image.width(), image.height(), 3);
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      for (int c = 0; c < 3; ++c) other.at(image.width() - 1 - x, y, c) = image.at(x, y, c);
-    }
-  }
-  return other;
+  return moved(image, image.width(), image.height(), [&](int x, int y) { return std::pair(image.width() - 1 - x, y); });
 }
 
 std::string other_side(const std::string& name) {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
@@ -12,11 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const BodyModel& human() {
-  static const BodyModel body =
-      level_of_detail(build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 2000);
-  return body;
-}
+const BodyModel& human() { return *human_for_test(2000); }
 
 void expect_inside_limits(const Skeleton& skeleton, const std::vector<std::vector<double>>& poses) {
   for (const auto& pose : poses) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
 #include "silpose/shape/keypoint_axes.h"
 #include "silpose/synth/test_scene.h"
@@ -11,8 +11,7 @@ namespace silpose {
 namespace {
 
 SyntheticSequence human_that_stands(int num_frames, int lead_in = 0) {
-  const auto body = std::make_shared<const BodyModel>(
-      level_of_detail(build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 1500));
+  const auto body = human_for_test(1500);
   SyntheticMotion motion;
   motion.poses.assign(static_cast<size_t>(num_frames), standing_pose(*body));
   return make_sequence(body, motion, {.views = {{"it", 30}}, .lead_in = lead_in}).value();

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/render/silhouette.h"
 
 namespace silpose {
@@ -31,8 +31,7 @@ class BodyErrorTest : public ::testing::Test {
     return error.variance(evidence, pose_, scratch);
   }
 
-  std::shared_ptr<const BodyModel> body_ = std::make_shared<const BodyModel>(
-      level_of_detail(build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 800));
+  std::shared_ptr<const BodyModel> body_ = human_for_test(800);
   std::vector<double> pose_ = standing_pose(*body_);
   PinholeCamera front_ = look_at_camera(640, 480, 700, {0, 1, 5}, {0, 0.9, 0});
   PinholeCamera side_ = look_at_camera(640, 480, 700, {5, 1, 0}, {0, 0.9, 0});

@@ -5,18 +5,14 @@
 #include <algorithm>
 
 #include "silpose/base/rng.h"
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 
 namespace silpose {
 namespace {
 
 class LandmarkProposalTest : public testing::Test {
  protected:
-  static std::shared_ptr<const BodyModel> human() {
-    static const auto body = std::make_shared<const BodyModel>(
-        build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value());
-    return body;
-  }
+  static std::shared_ptr<const BodyModel> human() { return human_for_test(); }
 
   int dof(const char* name) const { return body_->skeleton.find_dof(name).value(); }
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
@@ -58,10 +58,7 @@ TEST(ExchangedLimbs, ABodyWithoutPairsHasNone) {
   EXPECT_TRUE(exchanged_limbs(make_test_body().skeleton, std::vector<double>(8, 0.0)).empty());
 }
 
-const BodyModel& human() {
-  static const BodyModel body = build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value();
-  return body;
-}
+const BodyModel& human() { return *human_for_test(); }
 
 std::vector<double> walking_pose() {
   const BodyModel& body = human();

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 
 namespace silpose {
 namespace {
@@ -14,10 +14,7 @@ using testing::IsEmpty;
 
 class OpenQuestions : public testing::Test {
  protected:
-  static const BodyModel& human() {
-    static const BodyModel body = build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value();
-    return body;
-  }
+  static const BodyModel& human() { return *human_for_test(); }
   // Two seconds at 20 a second, all angles known to one degree.
   std::vector<StepReport> reports() const {
     std::vector<StepReport> made(40);

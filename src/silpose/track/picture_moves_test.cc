@@ -6,16 +6,13 @@
 #include <map>
 #include <string>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
 namespace {
 
-const BodyModel& human() {
-  static const BodyModel body = build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value();
-  return body;
-}
+const BodyModel& human() { return *human_for_test(); }
 
 // Arms that differ, seen from 45 degrees.
 std::vector<double> reaching_pose() {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "silpose/base/rng.h"
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
@@ -16,11 +16,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Body = std::shared_ptr<const BodyModel>;
 
-Body human() {
-  static const auto body = std::make_shared<const BodyModel>(
-      level_of_detail(build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 2500));
-  return body;
-}
+Body human() { return human_for_test(2500); }
 
 VectorXd vector_of(const std::vector<double>& pose) {
   return Eigen::Map<const VectorXd>(pose.data(), std::ssize(pose));

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/track/limbs.h"
 #include "silpose/track/tracker.h"
@@ -16,11 +16,7 @@ namespace {
 
 class RecoveryTest : public ::testing::Test {
  protected:
-  static std::shared_ptr<const BodyModel> human() {
-    static const auto body = std::make_shared<const BodyModel>(
-        level_of_detail(build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 1500));
-    return body;
-  }
+  static std::shared_ptr<const BodyModel> human() { return human_for_test(1500); }
 
   double& dof(std::vector<double>& pose, const char* name) const {
     return pose[static_cast<size_t>(*body_->skeleton.find_dof(name))];
