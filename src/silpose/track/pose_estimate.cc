@@ -57,16 +57,19 @@ LandmarkVariances landmark_variances(const BodyModel& body, std::span<const doub
   const PointMotion motion(body.skeleton, pose);
   const auto landmarks = landmark_positions(body, pose);
   const size_t num_joints = motion.world_from_joint().size();
-  const Eigen::Matrix3Xd of_root = motion.jacobian(0, landmarks.front());
-  const auto variance = [&](const Eigen::Matrix3Xd& jacobian) -> Eigen::Vector3d {
-    return (jacobian * covariance).cwiseProduct(jacobian).rowwise().sum().cwiseMax(0);
+  const Eigen::Matrix3Xd root = motion.jacobian(0, landmarks.front());
+  const Eigen::Matrix3Xd root_covariance = root * covariance;
+  const auto product = [](const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) -> Eigen::Vector3d {
+    return a.cwiseProduct(b).rowwise().sum();
   };
+  const Eigen::Vector3d of_root = product(root_covariance, root);
   LandmarkVariances variances;
   for (size_t l = 0; l < landmarks.size(); ++l) {
     const int joint = l < num_joints ? static_cast<int>(l) : body.end_points[l - num_joints].joint_idx;
     const Eigen::Matrix3Xd jacobian = motion.jacobian(joint, landmarks[l]);
-    variances.in_world.push_back(variance(jacobian));
-    variances.about_root.push_back(variance(jacobian - of_root));
+    const Eigen::Vector3d own = product(jacobian * covariance, jacobian);
+    variances.in_world.emplace_back(own.cwiseMax(0));
+    variances.about_root.emplace_back((own - 2 * product(root_covariance, jacobian) + of_root).cwiseMax(0));
   }
   return variances;
 }
