@@ -25,8 +25,8 @@ std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<cons
                                    std::span<const std::vector<double>> poses, Console& console) {
   if (Console::interrupted()) return std::nullopt;
   const auto total = static_cast<int64_t>(clip.size());
-  std::optional<BodyFit> fit = fit_body(tracker.body, tracker.cameras, clip, poses, body_fit_options(tracker),
-                                        [&] { return console.update("fitting the body", total, total); });
+  std::optional<BodyFit> fit =
+      fit_body(tracker, clip, poses, [&] { return console.update("fitting the body", total, total); });
   return Console::interrupted() ? std::nullopt : std::move(fit);
 }
 

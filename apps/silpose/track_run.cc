@@ -40,7 +40,7 @@ class TrackRun {
     const bool as_a_whole = *tracked_.used.smooth || *options_.fit_body;
     if (as_a_whole) writer_.keep_confidence();
     if (resume_.earlier) {
-      if (Result<void> ready = go_on(std::move(*resume_.earlier)); !ready) return ready.failure();
+      if (Result<void> ready = restore(std::move(*resume_.earlier)); !ready) return ready.failure();
     }
     now_.seconds.background += source_.learning_s();
     const Result<void> done = as_a_whole ? track_whole() : track_online();
@@ -87,8 +87,8 @@ class TrackRun {
     return {};
   }
 
-  // Reads the pictures of the frames done again, without segmenting them, and takes up what was left.
-  Result<void> go_on(TrackCheckpoint earlier) {
+  // Restores the checkpoint. Reads the pictures of the frames that are done, without segmenting them.
+  Result<void> restore(TrackCheckpoint earlier) {
     int64_t last = 0;
     for (int64_t n = 0; n < earlier.num_frames; ++n) {
       if (!console_.update("reading what is done", n, earlier.num_frames)) return error("interrupted");
@@ -119,9 +119,19 @@ class TrackRun {
     for (const StepReport& report : now_.reports) {
       if (Result<void> put = recorder_.put(report); !put) return put;
     }
-    console_.message(fmt::format("{}: {} frames are done; going on from frame {}", resume_.folder.string(),
-                                 now_.num_frames, last + 1));
+    console_.message(fmt::format("{}: {} frames are done; resuming {}", resume_.folder.string(), now_.num_frames,
+                                 place_of_resume(last + 1)));
     return {};
+  }
+
+  // Where the checkpoint was written, for the user.
+  [[nodiscard]] std::string place_of_resume(int64_t next_frame_idx) const {
+    const bool is_whole = !now_.seen.empty();
+    if (is_whole && !now_.reports.empty()) return "with the overlay";
+    if (!now_.given_poses.empty())
+      return now_.tracker.empty() ? "with the fit of the body" : "after the fit of the body";
+    if (is_whole && !now_.tracker.empty()) return "in the pass over the whole clip";
+    return fmt::format("at frame {}", next_frame_idx);
   }
 
   // Until all files of the frames so far are written.
@@ -190,7 +200,7 @@ class TrackRun {
       const auto seen = std::make_shared<Instant>(std::move(now));
       Result<void> written = writing_.give([this, seen, pose = report.pose]() -> Result<void> {
         Result<void> masks = writer_.add_masks(seen->frame, seen->observations);
-        // A film cannot be gone on with: it is drawn in the end.
+        // A film cannot be continued: it is drawn at the end.
         if (!masks || is_resumed_) return masks;
         return writer_.add_picture(std::move(seen->frame.images[0]), seen->frame.time_ns, pose);
       });
@@ -233,7 +243,7 @@ class TrackRun {
     return draw();
   }
 
-  // Of tracking the clip as a whole; what saving comes to is in `saved_`.
+  // For tracking the clip as a whole; `saved_` has the result of saving.
   ClipResume clip_resume() {
     return {.state = now_.tracker, .keep = [this](const std::function<std::string()>& state) {
               now_.seconds.smooth += smoothing_.restart();
@@ -247,19 +257,19 @@ class TrackRun {
       return saved_ && console_.update("tracking", static_cast<int64_t>(done), static_cast<int64_t>(total));
     };
     std::vector<StepReport> reports = track_clip(tracker_options_, clip_, progress, clip_resume());
-    // What there is of them is done again, from the state that was kept.
+    // An incomplete pass is resumed from the checkpoint's state, not from its reports.
     if (!saved_ || (Console::interrupted() && reports.size() < clip_.size())) return saved_;
-    double told_s = 0;
+    double counted_s = 0;
     for (StepReport& report : reports) {
       const StepSeconds& of_step = report.seconds;
-      told_s += of_step.start + of_step.propagate + of_step.likelihood + of_step.resample;
+      counted_s += of_step.start + of_step.propagate + of_step.likelihood + of_step.resample;
       if (Result<void> recorded = record(std::move(report)); !recorded) return recorded;
     }
-    now_.seconds.smooth += smoothing_.restart() - told_s;
+    now_.seconds.smooth += smoothing_.restart() - counted_s;
     return save({});
   }
 
-  // From here on the body is the subject's, as far as the clip tells it.
+  // Replaces the body by the subject's, as far as the clip determines it.
   Result<void> fit_body_to_clip() {
     smoothing_.restart();
     if (now_.given_poses.empty()) {
@@ -275,8 +285,7 @@ class TrackRun {
       tracked_.warnings.push_back("the body is as given: " + why_not_fitted(tracker_options_));
       return {};
     }
-    tracker_options_.body = fit->body;
-    tracker_options_.size_deviation = fit->size_deviation;
+    tracker_options_ = options_after_fit(std::move(tracker_options_), *fit);
     tracked_.used.size_deviation = tracker_options_.size_deviation;
     writer_.set_fitted_body(fit->body);
     tracked_.body_fit = std::move(fit);

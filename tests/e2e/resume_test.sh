@@ -39,7 +39,7 @@ rows=$(($(wc -l <twice.partial/poses.csv) - 1))
 [[ $rows -ge 5 && $rows -lt 24 ]] || fail "$rows rows in the partial poses.csv"
 stop INT twice masks/000020.png "${online[@]}" --resume
 "$silpose" track "${online[@]}" --resume --threads 1 --out twice >/dev/null 2>err.txt || fail "--resume: exit $?: $(cat err.txt)"
-grep -q -E 'twice.partial: [0-9]+ frames are done; going on from frame [0-9]+' err.txt || fail "does not say where it goes on: $(cat err.txt)"
+grep -q -E 'twice.partial: [0-9]+ frames are done; resuming at frame [0-9]+' err.txt || fail "does not say where it resumes: $(cat err.txt)"
 same whole twice "${tables[@]}" camera.toml config.toml masks/000006.png masks/000029.png overlay.mp4
 
 # One of many clips.
@@ -74,15 +74,25 @@ stop INT pair_again checkpoint.bin "${pair[@]}"
 "$silpose" track "${pair[@]}" --resume --out pair_again --quiet || fail "--resume of a fitted body: exit $?"
 same pair_whole pair_again "${tables[@]}" fitted.body
 
-# The same without smoothing: stopped in the second pass, as soon as the fit is done.
+# The same without smoothing, stopped in the second pass. When that is, is found by bisection.
 pair=("${pair[@]}" --no-smooth --fit-body)
+began=$(date +%s%3N)
 "$silpose" track "${pair[@]}" --out pair_online --quiet
-for wait in 0.4 0.6 0.8 1.0; do  # seconds; whichever pass that is in
-  rm -rf pair_online_again pair_online_again.partial
-  timeout --signal=INT "$wait" "$silpose" track "${pair[@]}" --out pair_online_again --quiet 2>/dev/null && break
-  "$silpose" track "${pair[@]}" --resume --out pair_online_again --quiet || fail "--resume after $wait s: exit $?"
-  same pair_online pair_online_again "${tables[@]}" fitted.body
+early=0 late=$(($(date +%s%3N) - began)) place="nowhere"  # milliseconds
+for ((attempt = 0; attempt < 40; ++attempt)); do
+  ((late - early < 4)) && early=$((early / 2)) late=$((late * 3 / 2))  # the machine is slower or faster than it was
+  ms=$(((early + late) / 2))
+  rm -rf pair_again pair_again.partial
+  timeout --signal=INT "$((ms / 1000)).$(printf %03d $((ms % 1000)))" \
+    "$silpose" track "${pair[@]}" --out pair_again --quiet >/dev/null 2>&1 && late=$ms && continue
+  [[ -e pair_again.partial/checkpoint.bin ]] || { early=$ms && continue; }
+  "$silpose" track "${pair[@]}" --resume --out pair_again >/dev/null 2>err.txt || fail "--resume after $ms ms: exit $?"
+  same pair_online pair_again "${tables[@]}" fitted.body
+  place=$(grep -o 'resuming .*' err.txt) || fail "does not say where it resumes: $(cat err.txt)"
+  [[ $place == "resuming after the fit of the body" ]] && break
+  [[ $place == "resuming with the overlay" ]] && late=$ms || early=$ms
 done
+[[ $place == "resuming after the fit of the body" ]] || fail "not stopped in the second pass in $attempt tries; last: $place"
 
 # A sampling filter, and a background that is learned on and on.
 sampling=(truth/video.mp4 --background online --camera truth/camera.toml --particles 300 --layers 4)

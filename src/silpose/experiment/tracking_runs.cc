@@ -156,11 +156,8 @@ void fit_subject(TrackerOptions& options, std::span<const ClipInstant> instants,
     poses.push_back(report.pose);
   }
   if (poses.size() != instants.size()) return;  // stopped
-  const std::optional<BodyFit> fit = fit_body(options.body, options.cameras, instants, poses, body_fit_options(options),
-                                              [&] { return progress(0, instants.size()); });
-  if (!fit) return;
-  options.body = fit->body;
-  options.size_deviation = fit->size_deviation;
+  const std::optional<BodyFit> fit = fit_body(options, instants, poses, [&] { return progress(0, instants.size()); });
+  if (fit) options = options_after_fit(std::move(options), *fit);
 }
 
 // Tracks the instants, with a body fitted to the subject where that is asked for; nothing when `go_on` says false.

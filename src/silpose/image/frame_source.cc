@@ -56,19 +56,12 @@ class LiveCamera : public FrameSource {
 
 class PictureSource : public FrameSource {
  public:
-  explicit PictureSource(PictureList pictures)
-      : paths_(std::move(pictures.paths)), numbers_(std::move(pictures.numbers)) {}
+  PictureSource(PictureList pictures, std::optional<double> focal_mm35)
+      : paths_(std::move(pictures.paths)), numbers_(std::move(pictures.numbers)), focal_mm35_(focal_mm35) {}
 
   [[nodiscard]] std::span<const int64_t> numbers() const override { return numbers_; }
   [[nodiscard]] int64_t num_frames_hint() const override { return static_cast<int64_t>(paths_.size()); }
-  // Of the first picture. FFmpeg's decoder of JPEG reads EXIF; OpenCV's keeps it to itself.
-  [[nodiscard]] std::optional<double> focal_mm35() const override {
-    const fs::path extension = paths_.front().extension();
-    if (extension != ".jpg" && extension != ".jpeg" && extension != ".JPG" && extension != ".JPEG") return {};
-    const auto picture = open_video_file(paths_.front().string());
-    if (!picture || !(*picture)->next()) return {};
-    return (*picture)->focal_mm35();
-  }
+  [[nodiscard]] std::optional<double> focal_mm35() const override { return focal_mm35_; }
   Result<std::optional<Picture>> next() override {
     if (next_ == paths_.size()) return std::optional<Picture>();
     Result<ByteImage> image = read_colour_image(paths_[next_++]);
@@ -83,8 +76,18 @@ class PictureSource : public FrameSource {
  private:
   std::vector<fs::path> paths_;
   std::vector<int64_t> numbers_;
+  std::optional<double> focal_mm35_;  // of the first picture
   size_t next_ = 0;
 };
+
+// By a JPEG's EXIF. FFmpeg's decoder reads it; OpenCV's has no access to it.
+std::optional<double> focal_mm35_of_jpeg(const fs::path& path) {
+  const fs::path extension = path.extension();
+  if (extension != ".jpg" && extension != ".jpeg" && extension != ".JPG" && extension != ".JPEG") return {};
+  const auto picture = open_video_file(path.string());
+  if (!picture || !(*picture)->next()) return {};
+  return (*picture)->focal_mm35();
+}
 
 // FFmpeg takes some text files for videos (it draws them).
 bool is_text(const std::string& start) {
@@ -102,7 +105,8 @@ Result<std::unique_ptr<FrameSource>> open_camera(const std::string& input, int d
 Result<std::unique_ptr<FrameSource>> open_pictures(const std::string& input) {
   Result<PictureList> pictures = list_pictures(input);
   if (!pictures) return pictures.failure();
-  return std::unique_ptr<FrameSource>(std::make_unique<PictureSource>(std::move(*pictures)));
+  const std::optional<double> focal_mm35 = focal_mm35_of_jpeg(pictures->paths.front());
+  return std::unique_ptr<FrameSource>(std::make_unique<PictureSource>(std::move(*pictures), focal_mm35));
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "silpose/body/stretchable.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/track/girth_fit.h"
+#include "silpose/track/judged_clip.h"
 #include "silpose/track/keypoint_sides.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/plausibility.h"
@@ -27,20 +28,22 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr FitStage kStages[] = {{Blur::k8, 6}, {Blur::k4, 6}};
-// How good a fit can be tells how much the silhouettes are worth, and where joints are, how thick the flesh is: each
-// round starts from what the one before found out.
+// The noise of the silhouettes follows from how well they fit, and the girths from where the joints are: each round
+// starts from the result of the one before.
 constexpr int kRounds = 3;
 constexpr SmallestGain kSmallestGain{.relative = 1e-3};
 constexpr int kVertices = 3000;        // of the mesh that is compared
 constexpr double kRestWeight = 0.2;    // plausibility.h
 constexpr double kMaxRotation = 0.35;  // radians a step
-// Errors of masks and networks are much alike in all instants: more instants than these tell no more of the lengths.
+constexpr size_t kInstants = 16;       // [guess] of the clip, evenly spread: neighbours carry the same information
+// Errors of masks and networks are correlated between instants: all instants together count as this many independent
+// ones.
 // [tuned: a simulation like experiment human-proportions with other people, keypoints and masks; 1, 2 and 4 were alike,
 // 8 and 16 worse]
 constexpr double kIndependentInstants = 4;
-constexpr double kStature = 0.01;  // deviation, relative, of a stature that is given: shoes, posture [guess]
-// What a size by the floor may be off, of itself: as far as rendered subjects were (docs/results.md).
-constexpr double kOfCameraFile = 0.02;
+constexpr double kStatureDeviation = 0.01;  // [guess] of a given stature, relative: shoes, posture
+// Of a size by the floor, relative: as far as rendered subjects were off (docs/results.md).
+constexpr double kLeastSizeDeviation = 0.02;
 
 // The unknowns: lengths [S] of all instants, and a pose [D] each.
 struct Unknowns {
@@ -143,7 +146,7 @@ class Problem {
     return out;
   }
 
-  // What all instants together say of the lengths, poses eliminated.
+  // The normal equations of the lengths with poses eliminated.
   struct Reduced {
     MatrixXd hessian;                                // [S, S]
     VectorXd gradient;                               // [S]
@@ -185,7 +188,7 @@ class Problem {
   VectorXd lower_, upper_;                // [S] limits of the lengths
 };
 
-// How the stature answers to the lengths [S]. Bones of both sides are lengthened together: the longer leg stands.
+// Derivative of the stature by the lengths [S]. Bones of both sides are lengthened together: the longer leg stands.
 VectorXd stature_by_lengths(const BodyModel& body) {
   constexpr double kLonger = 0.01;  // metres
   const Skeleton stretched = stretchable(body).skeleton;
@@ -203,19 +206,19 @@ VectorXd stature_by_lengths(const BodyModel& body) {
   return stature;
 }
 
-// The lengths' prior information [S, S]: as people differ, and with one camera of a stature that is known.
+// Information [S, S] of the lengths' prior: how people differ, and with one camera the stature.
 MatrixXd information_of_lengths(const BodyModel& body, bool one_camera, double size_deviation) {
   const Skeleton stretched = stretchable(body).skeleton;
   MatrixXd information = stretch_covariance(stretched).inverse();
   if (!one_camera) return information;
   const VectorXd stature = stature_by_lengths(body);
-  const double deviation = body.height_m * std::hypot(kStature, size_deviation);
+  const double deviation = body.height_m * std::hypot(kStatureDeviation, size_deviation);
   return information + stature * stature.transpose() / (deviation * deviation);
 }
 
-// The body's size by the floor, and the poses of that body that look the same from the camera.
-std::optional<SizeFit> fit_size_to(BodyModel& body, const PinholeCamera& camera,
-                                   std::vector<std::vector<double>>& poses) {
+// Scales the body by the floor, and moves the poses so that they look the same from the camera.
+std::optional<SizeFit> rescale_by_floor(BodyModel& body, const PinholeCamera& camera,
+                                        std::vector<std::vector<double>>& poses) {
   const std::optional<SizeFit> size = fit_size(body, camera, poses);
   if (!size) return size;
   const Eigen::Vector3d centre = camera.centre_in_world();
@@ -229,54 +232,44 @@ std::optional<SizeFit> fit_size_to(BodyModel& body, const PinholeCamera& camera,
   return size;
 }
 
-// The instants that tell lengths: with one camera by keypoints whose sides are right, with several by two of them.
-std::vector<size_t> telling_instants(std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
-                                     size_t num_cameras, EvidenceKind evidence) {
-  std::vector<size_t> usable;
-  if (num_cameras > 1) {
-    for (size_t t = 0; t < clip.size(); ++t) {
-      if (!poses[t].empty() && std::ranges::count_if(clip[t].observations, is_usable) >= 2) usable.push_back(t);
-    }
-    return usable;
-  }
-  if (evidence == EvidenceKind::kSilhouette) return usable;
-  std::vector<const Keypoints3D*> keypoints;
-  std::vector<int64_t> times_ns;
-  for (const ClipInstant& instant : clip) {
-    keypoints.push_back(&instant.observations.front().keypoints);
-    times_ns.push_back(instant.time_ns);
-  }
-  const std::vector<double> exchanged = exchanged_sides(keypoints, times_ns);
+// The instants that constrain lengths: seen by two cameras, or by the only one with keypoints.
+std::vector<size_t> informative_instants(const JudgedClip& clip, std::span<const std::vector<double>> poses,
+                                         size_t num_cameras, EvidenceKind evidence) {
+  const auto is_informative = [&](size_t t) {
+    const std::vector<Observation>& seen = clip[t].observations;
+    if (num_cameras > 1) return std::ranges::count_if(seen, is_usable) >= 2;
+    return evidence == EvidenceKind::kBoth && is_usable(seen.front()) && line_across(seen.front().keypoints);
+  };
+  std::vector<size_t> instants;
   for (size_t t = 0; t < clip.size(); ++t) {
-    const Observation& seen = clip[t].observations.front();
-    if (!poses[t].empty() && is_usable(seen) && line_across(seen.keypoints) && exchanged[t] <= kExchanged) {
-      usable.push_back(t);
-    }
+    if (!poses[t].empty() && is_informative(t)) instants.push_back(t);
   }
-  return usable;
+  return instants;
 }
 
 }  // namespace
 
-std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector<PinholeCamera>& cameras,
-                                std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
-                                const BodyFitOptions& options, const std::function<bool()>& proceed) {
+std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const ClipInstant> clip,
+                                std::span<const std::vector<double>> poses, const std::function<bool()>& proceed) {
+  const std::vector<PinholeCamera>& cameras = options.cameras;
   check(poses.size() == clip.size(), "fit_body: {} poses of {} instants", poses.size(), clip.size());
-  check(options.num_instants >= 1, "fit_body: from no instant");
   for (const std::vector<double>& pose : poses) {
-    check(pose.empty() || pose.size() == body->skeleton.dofs().size(), "fit_body: a pose of {} numbers for {} DOF",
-          pose.size(), body->skeleton.dofs().size());
+    check(pose.empty() || pose.size() == options.body->skeleton.dofs().size(),
+          "fit_body: a pose of {} numbers for {} DOF", pose.size(), options.body->skeleton.dofs().size());
   }
-  const bool one_camera = cameras.size() == 1;
+  const bool one_camera = cameras.size() == 1, floor = *options.resolved().floor;
+  const EvidenceKind evidence_kind =
+      options.evidence == EvidenceKind::kSilhouette ? EvidenceKind::kSilhouette : EvidenceKind::kBoth;
   BodyFit fit;
-  BodyModel given = *body;
+  BodyModel given = *options.body;
   std::vector<std::vector<double>> given_poses(poses.begin(), poses.end());
-  const std::vector<size_t> usable = telling_instants(clip, poses, cameras.size(), options.evidence);
+  const JudgedClip judged(clip, cameras.size());
+  const std::vector<size_t> usable = informative_instants(judged, poses, cameras.size(), evidence_kind);
   if (one_camera) {
     fit.size_deviation = options.size_deviation;
-    if (options.floor && (usable.empty() || options.size_deviation > 0)) {
-      fit.size = fit_size_to(given, cameras.front(), given_poses);
-      if (fit.size) fit.size_deviation = std::max(fit.size->deviation, kOfCameraFile);
+    if (floor && (usable.empty() || options.size_deviation > 0)) {
+      fit.size = rescale_by_floor(given, cameras.front(), given_poses);
+      if (fit.size) fit.size_deviation = std::max(fit.size->deviation, kLeastSizeDeviation);
     }
   }
   if (usable.empty()) {
@@ -288,9 +281,9 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
 
   const BodyModel coarse = level_of_detail(given, kVertices);
   const BodyModel bare = stretchable(coarse);
-  const size_t count = std::min(options.num_instants, usable.size());
-  const double instants_alike = std::max(1.0, static_cast<double>(count) / kIndependentInstants);
-  const MatrixXd information = instants_alike * information_of_lengths(coarse, one_camera, fit.size_deviation);
+  const size_t count = std::min(kInstants, usable.size());
+  const double redundancy = std::max(1.0, static_cast<double>(count) / kIndependentInstants);
+  const MatrixXd information = redundancy * information_of_lengths(coarse, one_camera, fit.size_deviation);
   const std::vector<int> shape = shape_dofs(bare.skeleton);
   const Girths girths_of(bare);
   const auto S = std::ssize(shape);
@@ -308,10 +301,10 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
     const CoverageLikelihood likelihood(stretched, cameras);
     if (evidence.empty()) {
       for (const size_t t : chosen) {
-        evidence.push_back(likelihood.prepare(clip[t].observations, Blur::k8, Blur::k4, options.evidence));
+        evidence.push_back(likelihood.prepare(judged[t].observations, Blur::k8, Blur::k4, evidence_kind));
       }
     }
-    const Plausibility plausibility(stretched, options.floor);
+    const Plausibility plausibility(stretched, floor);
     Problem problem(likelihood, plausibility, evidence, information);
     problem.estimate_noise(at.unknowns);
     for (const FitStage& stage : kStages) {
@@ -328,7 +321,7 @@ std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, co
     }
   }
   fit.lengths.assign(at.unknowns.lengths.begin(), at.unknowns.lengths.end());
-  const MatrixXd covariance = instants_alike * Problem::reduce(at.equations, 0).hessian.inverse();
+  const MatrixXd covariance = redundancy * Problem::reduce(at.equations, 0).hessian.inverse();
   for (Eigen::Index s = 0; s < S; ++s) fit.deviations.push_back(std::sqrt(std::max(covariance(s, s), 0.0)));
   for (const int d : shape) fit.names.push_back(bare.skeleton.dofs()[static_cast<size_t>(d)].name);
   for (size_t g = 0; g < girths_of.names().size(); ++g) {
@@ -353,10 +346,10 @@ TrackerOptions options_before_fit(const TrackerOptions& options) {
   return pass;
 }
 
-BodyFitOptions body_fit_options(const TrackerOptions& options) {
-  return {.floor = *options.resolved().floor,
-          .evidence = options.evidence == EvidenceKind::kSilhouette ? EvidenceKind::kSilhouette : EvidenceKind::kBoth,
-          .size_deviation = options.size_deviation};
+TrackerOptions options_after_fit(TrackerOptions options, const BodyFit& fit) {
+  options.body = fit.body;
+  options.size_deviation = fit.size_deviation;
+  return options;
 }
 
 }  // namespace silpose

@@ -1,9 +1,9 @@
-// fit_body(): how long the subject's bones are and how thick the flesh around them, from a tracked clip: lengths that
-// all instants share and each instant's pose are fitted together to the observations, in turn with girths. Two cameras
-// or more tell lengths from depth. One does where a network's keypoints say how the limbs are turned: a leg that is too
-// long for its silhouette must lean in every instant, and the keypoints contradict. Based on: bundle adjustment, whose
-// poses are eliminated by the Schur complement (references.bib: triggs2000). Threads: a function without state; uses
-// all cores and gives the same result on any number.
+// fit_body(): the lengths of a subject's bones and the girths around them, from a tracked clip. Lengths, which all
+// instants share, and the pose of each instant are fitted together to the observations; girths are fitted in turn with
+// them. Two cameras or more determine lengths by triangulation. One camera does with a network's keypoints: a leg that
+// is longer than its silhouette must lean in every instant, which contradicts the directions of the keypoints. Based
+// on: bundle adjustment, with poses eliminated by the Schur complement (references.bib: triggs2000). Threads: a
+// function without state; uses all cores and gives the same result on any number.
 #pragma once
 
 #include <functional>
@@ -21,40 +21,35 @@
 
 namespace silpose {
 
-struct BodyFitOptions {
-  size_t num_instants = 16;                           // taken from the clip, evenly: neighbours tell the same
-  bool floor = false;                                 // nothing lies below it
-  EvidenceKind evidence = EvidenceKind::kSilhouette;  // with kBoth keypoints count, too
-  double size_deviation = 0;                          // TrackerOptions'; only one camera's fit needs it
-};
-
 struct BodyFit {
-  std::shared_ptr<const BodyModel> body;  // the whole mesh, with these lengths
+  std::shared_ptr<const BodyModel> body;  // the whole mesh, fitted
   std::vector<std::string> names;         // [S] "right_shin_length"
-  std::vector<double> lengths;            // [S] metres longer than `body` had them, body/stretchable.h
-  std::vector<double> deviations;         // [S] of what is not known of them
+  std::vector<double> lengths;            // [S] metres longer than in the body as given (after `size`)
+  std::vector<double> deviations;         // [S] standard deviations of these, metres
   struct Girth {
     std::string name;                 // "thigh", both of them
-    double share = 0, deviation = 0;  // thicker than `body` had it, body/girth.h
+    double share = 0, deviation = 0;  // thicker than in the body as given, body/girth.h
   };
   std::vector<Girth> girths;    // [G]
-  std::optional<SizeFit> size;  // of one camera's subject, by the floor; lengths and girths come on top of it
-  double size_deviation = 0;    // of the fitted body, as TrackerOptions have it
+  std::optional<SizeFit> size;  // of one camera's subject of unknown height, by the floor
+  double size_deviation = 0;    // TrackerOptions' for the fitted body
 };
 
-// `poses` [T][D] are those of the clip's instants; an empty one leaves its instant out, and so does, with several
-// cameras, a subject whom fewer than two of them see. Lengths stay within three deviations.
-// With one camera poses are those of a tracker that knows of no floor (size_fit.h). A size that is not known is fitted
-// by the floor. Lengths and girths are fitted from the instants with 3D keypoints whose sides are not exchanged, if
-// those count; the stature stays as it is, up to size_deviation.
-// Nothing where the clip tells nothing of the body. Errors: throws std::invalid_argument where poses do not fit the
-// clip or the body.
-std::optional<BodyFit> fit_body(const std::shared_ptr<const BodyModel>& body, const std::vector<PinholeCamera>& cameras,
-                                std::span<const ClipInstant> clip, std::span<const std::vector<double>> poses,
-                                const BodyFitOptions& options = {}, const std::function<bool()>& proceed = {});
+// Fits the body of `options` with their cameras, floor, evidence and size_deviation. `poses` [T][D] are those of the
+// clip's instants, tracked as options_before_fit() says; empty: none. About 16 instants are used, evenly spread.
+// Several cameras: instants in which at least two see the subject. One camera: first the size by the floor, where it is
+// known and the height is not; then lengths and girths from instants with 3D keypoints, at the same stature up to
+// size_deviation. Lengths stay within three prior deviations (body/stretchable.h).
+// `proceed`: false stops the fit early. Nothing where the clip does not constrain the body.
+// Errors: throws std::invalid_argument where poses or observations do not fit the clip, the body or the cameras.
+std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const ClipInstant> clip,
+                                std::span<const std::vector<double>> poses, const std::function<bool()>& proceed = {});
 
-// What the tracker that finds these poses is asked for, and what fit_body() is then, for a tracker with `options`.
+// For the pass that finds the poses of fit_body(): online, on a coarse mesh; with one camera without a floor
+// (size_fit.h).
 TrackerOptions options_before_fit(const TrackerOptions& options);
-BodyFitOptions body_fit_options(const TrackerOptions& options);
+
+// The same options with the fitted body.
+TrackerOptions options_after_fit(TrackerOptions options, const BodyFit& fit);
 
 }  // namespace silpose

@@ -7,7 +7,7 @@
 #include "silpose/base/parallel.h"
 #include "silpose/base/rng.h"
 #include "silpose/body/girth.h"
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/body/test_body.h"
 #include "silpose/render/silhouette.h"
@@ -37,6 +37,14 @@ class BodyFitTest : public ::testing::Test {
   }
   static std::vector<double> pose_at(int t) { return {0.02 * t, 0.52, 0, 0.2 * t, 0.1 * t, 0.05 * t, 0.3, -0.08 * t}; }
 
+  [[nodiscard]] TrackerOptions options() const {
+    TrackerOptions options;
+    options.body = body_;
+    options.cameras = cameras_;
+    options.floor = false;
+    return options;
+  }
+
   const std::vector<double> longer_ = {0.01, -0.03};
   std::shared_ptr<const BodyModel> body_ = std::make_shared<BodyModel>(make_test_body());
   BodyModel subject_ = with_lengths(*body_, longer_);
@@ -47,7 +55,7 @@ class BodyFitTest : public ::testing::Test {
 };
 
 TEST_F(BodyFitTest, FindsTheLengthsThatTwoCamerasShow) {
-  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_).value();
+  const BodyFit fit = fit_body(options(), clip_, poses_).value();
   ASSERT_EQ(fit.lengths.size(), 2u);
   for (size_t s = 0; s < 2; ++s) {
     EXPECT_NEAR(fit.lengths[s], longer_[s], 0.01) << s;
@@ -58,23 +66,23 @@ TEST_F(BodyFitTest, FindsTheLengthsThatTwoCamerasShow) {
 }
 
 TEST_F(BodyFitTest, IsSureOfLessWhereLessIsSeen) {
-  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_).value();
-  const BodyFit of_one = fit_body(body_, cameras_, clip_, poses_, {.num_instants = 1}).value();
+  const BodyFit fit = fit_body(options(), clip_, poses_).value();
+  const BodyFit of_one = fit_body(options(), std::span(clip_).first(1), std::span(poses_).first(1)).value();
   for (size_t s = 0; s < 2; ++s) EXPECT_GT(of_one.deviations[s], fit.deviations[s]) << s;
 }
 
 TEST_F(BodyFitTest, LeavesOutWhatHasNoPose) {
   for (size_t t = 1; t < poses_.size(); ++t) poses_[t].clear();
-  EXPECT_TRUE(fit_body(body_, cameras_, clip_, poses_).has_value());
+  EXPECT_TRUE(fit_body(options(), clip_, poses_).has_value());
   poses_[0].clear();
-  EXPECT_FALSE(fit_body(body_, cameras_, clip_, poses_).has_value());
+  EXPECT_FALSE(fit_body(options(), clip_, poses_).has_value());
   poses_.pop_back();
-  EXPECT_THROW((void)fit_body(body_, cameras_, clip_, poses_), std::invalid_argument);
+  EXPECT_THROW((void)fit_body(options(), clip_, poses_), std::invalid_argument);
 }
 
 TEST_F(BodyFitTest, NeedsTwoCamerasThatSeeTheSubject) {
   for (ClipInstant& instant : clip_) instant.observations[1].trust.nothing_found = true;
-  EXPECT_FALSE(fit_body(body_, cameras_, clip_, poses_).has_value());
+  EXPECT_FALSE(fit_body(options(), clip_, poses_).has_value());
 }
 
 TEST_F(BodyFitTest, FindsHowThickTheSubjectIs) {
@@ -86,7 +94,7 @@ TEST_F(BodyFitTest, FindsHowThickTheSubjectIs) {
       observation.box = observation.mask.bounding_box();
     }
   }
-  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_).value();
+  const BodyFit fit = fit_body(options(), clip_, poses_).value();
   ASSERT_EQ(fit.girths.size(), 3u);
   for (const BodyFit::Girth& girth : fit.girths) {
     EXPECT_NEAR(girth.share, 0.08, 0.035) << girth.name;
@@ -105,18 +113,20 @@ TEST_F(BodyFitTest, OneCameraTellsTheSizeByTheFloor) {
     }
   }
   for (ClipInstant& instant : clip_) instant.observations.resize(1);
-  const BodyModel believed = scaled(*body_, 1.1);
-  const auto shared = std::make_shared<const BodyModel>(believed);
-  const BodyFit fit = fit_body(shared, {cameras_[0]}, clip_, poses_, {.floor = true}).value();
+  TrackerOptions larger = options();
+  larger.body = std::make_shared<const BodyModel>(scaled(*body_, 1.1));
+  larger.cameras = {cameras_[0]};
+  EXPECT_FALSE(fit_body(larger, clip_, poses_).has_value()) << "without a floor";
+  larger.floor = true;
+  const BodyFit fit = fit_body(larger, clip_, poses_).value();
   EXPECT_NEAR(fit.size->factor, 1 / 1.1, 0.005);
   EXPECT_NEAR(fit.body->height_m, 1.5, 0.01);
   EXPECT_TRUE(fit.lengths.empty());
-  EXPECT_FALSE(fit_body(shared, {cameras_[0]}, clip_, poses_).has_value()) << "without a floor";
 }
 
 TEST_F(BodyFitTest, LengthsStayWithinLimitsWhereCamerasAreMixedUp) {
   std::swap(cameras_[0], cameras_[1]);
-  const BodyFit fit = fit_body(body_, cameras_, clip_, poses_).value();
+  const BodyFit fit = fit_body(options(), clip_, poses_).value();
   const Skeleton skeleton = stretchable(*body_).skeleton;
   for (size_t s = 0; s < fit.lengths.size(); ++s) {
     EXPECT_LE(std::abs(fit.lengths[s]), skeleton.dofs()[static_cast<size_t>(shape_dofs(skeleton)[s])].upper + 1e-12);
@@ -127,7 +137,7 @@ TEST_F(BodyFitTest, TheNumberOfThreadsChangesNothing) {
   std::vector<double> lengths[2];
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
-    lengths[threads - 1] = fit_body(body_, cameras_, clip_, poses_).value().lengths;
+    lengths[threads - 1] = fit_body(options(), clip_, poses_).value().lengths;
   }
   EXPECT_EQ(lengths[0], lengths[1]);
 }
@@ -135,11 +145,7 @@ TEST_F(BodyFitTest, TheNumberOfThreadsChangesNothing) {
 // A person with shorter legs and a longer trunk than people of their stature, seen by one camera and a network.
 class OneCameraFitTest : public ::testing::Test {
  protected:
-  static std::shared_ptr<const BodyModel> human() {
-    static const auto body = std::make_shared<const BodyModel>(
-        level_of_detail(build_human(MakeHumanData::load(SILPOSE_DATA_DIR "/makehuman").value(), {}).value(), 2000));
-    return body;
-  }
+  static std::shared_ptr<const BodyModel> human() { return human_for_test(2000); }
   OneCameraFitTest() {
     const Skeleton stretched = stretchable(*body_).skeleton;
     for (const int d : shape_dofs(stretched)) {
@@ -170,9 +176,16 @@ class OneCameraFitTest : public ::testing::Test {
     }
   }
   size_t dof(const char* name) const { return static_cast<size_t>(body_->skeleton.find_dof(name).value()); }
-  [[nodiscard]] std::optional<BodyFit> fit(const BodyFitOptions& options,
-                                           const std::shared_ptr<const BodyModel>& body = human()) const {
-    return fit_body(body, sequence_.cameras, clip_, sequence_.poses, options);
+  [[nodiscard]] TrackerOptions options(EvidenceKind evidence = EvidenceKind::kBoth) const {
+    TrackerOptions options;
+    options.body = body_;
+    options.cameras = sequence_.cameras;
+    options.floor = false;
+    options.evidence = evidence;
+    return options;
+  }
+  [[nodiscard]] std::optional<BodyFit> fit(const TrackerOptions& options) const {
+    return fit_body(options, clip_, sequence_.poses);
   }
   // Metres that the two bones of a leg are longer, the mean of both legs, and the trunk with the neck is.
   static std::pair<double, double> leg_and_trunk(const BodyFit& fit) {
@@ -192,7 +205,7 @@ class OneCameraFitTest : public ::testing::Test {
 };
 
 TEST_F(OneCameraFitTest, KeypointsTellBonesAndTheStatureStays) {
-  const std::optional<BodyFit> fitted = fit({.evidence = EvidenceKind::kBoth});
+  const std::optional<BodyFit> fitted = fit(options());
   ASSERT_TRUE(fitted.has_value());
   const auto [leg, trunk] = leg_and_trunk(*fitted);
   EXPECT_NEAR(leg, -0.05, 0.03);  // the prior pulls to the body's own: half is found
@@ -202,37 +215,48 @@ TEST_F(OneCameraFitTest, KeypointsTellBonesAndTheStatureStays) {
 }
 
 TEST_F(OneCameraFitTest, TellsNothingWithoutKeypointsThatCount) {
-  EXPECT_FALSE(fit({.evidence = EvidenceKind::kSilhouette}).has_value());
+  EXPECT_FALSE(fit(options(EvidenceKind::kSilhouette)).has_value());
   for (ClipInstant& instant : clip_) instant.observations[0].keypoints = {};
-  EXPECT_FALSE(fit({.evidence = EvidenceKind::kBoth}).has_value());
+  EXPECT_FALSE(fit(options()).has_value());
 }
 
 TEST_F(OneCameraFitTest, LeavesOutKeypointsWhoseSidesAreExchanged) {
-  const auto [leg, trunk] = leg_and_trunk(fit({.evidence = EvidenceKind::kBoth}).value());
+  const auto [leg, trunk] = leg_and_trunk(fit(options()).value());
   Keypoints3D& one = clip_[3].observations[0].keypoints;
   for (Keypoint3D& point : one.points) {
     point.x[2] = -point.x[2];
     point.name = point.name.starts_with("left_") ? "right_" + point.name.substr(5) : "left_" + point.name.substr(6);
   }
-  const auto [leg_then, trunk_then] = leg_and_trunk(fit({.evidence = EvidenceKind::kBoth}).value());
+  const auto [leg_then, trunk_then] = leg_and_trunk(fit(options()).value());
   EXPECT_NEAR(leg_then, leg, 0.01);
   EXPECT_NEAR(trunk_then, trunk, 0.01);
 }
 
 TEST_F(OneCameraFitTest, ASizeThatIsNotKnownComesFromTheFloor) {
-  const auto believed = std::make_shared<const BodyModel>(scaled(*body_, 1.08));
+  TrackerOptions larger = options();
+  larger.body = std::make_shared<const BodyModel>(scaled(*body_, 1.08));
+  larger.floor = true;
+  larger.size_deviation = 0.05;
   const Eigen::Vector3d centre = sequence_.cameras[0].centre_in_world();
   for (std::vector<double>& pose : sequence_.poses) {
     Eigen::Vector3d root = body_->skeleton.forward_kinematics(pose).front().translation;
     root.y() += 0.05;  // the body's legs are so much longer than the subject's
     place_root(body_->skeleton, pose, centre + 1.08 * (root - centre));
   }
-  const auto fitted = fit({.floor = true, .evidence = EvidenceKind::kBoth, .size_deviation = 0.05}, believed);
+  const auto fitted = fit(larger);
   ASSERT_TRUE(fitted.has_value() && fitted->size.has_value());
   EXPECT_NEAR(fitted->size->factor, 1 / 1.08, 0.02);
   EXPECT_NEAR(fitted->body->height_m, body_->height_m, 0.04);
   EXPECT_LT(leg_and_trunk(*fitted).first, -0.02);
   EXPECT_GT(fitted->size_deviation, 0);
+}
+
+TEST_F(OneCameraFitTest, OptionsTakeTheFittedBody) {
+  const std::optional<BodyFit> fitted = fit(options());
+  const TrackerOptions after = options_after_fit(options(), fitted.value());
+  EXPECT_EQ(after.body, fitted->body);
+  EXPECT_EQ(after.size_deviation, fitted->size_deviation);
+  EXPECT_FALSE(*options_before_fit(options()).floor) << "one camera";
 }
 
 }  // namespace

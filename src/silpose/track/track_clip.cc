@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,7 +14,7 @@
 #include "silpose/motion/noise.h"
 #include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
-#include "silpose/track/keypoint_sides.h"
+#include "silpose/track/judged_clip.h"
 #include "silpose/track/observe.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/smoother.h"
@@ -47,51 +46,6 @@ struct Possible {
   std::vector<double> energies;  // found once all passes are done
 
   static auto members(auto& p) { return std::tie(p.poses, p.velocities); }
-};
-
-// A clip in which keypoints do not count where the network exchanged left and right. Only the instants that this
-// changes are copied. The clip outlives it.
-class JudgedClip {
- public:
-  // Errors: throws std::invalid_argument where observations do not fit the cameras.
-  JudgedClip(std::span<const ClipInstant> clip, size_t num_cameras) : exchanged_(clip.size(), 0.0) {
-    instants_.reserve(clip.size());
-    std::vector<int64_t> times;
-    times.reserve(clip.size());
-    for (const ClipInstant& instant : clip) {
-      check(instant.observations.size() == num_cameras, "track_clip: {} observations for {} cameras",
-            instant.observations.size(), num_cameras);
-      instants_.push_back(&instant);
-      times.push_back(instant.time_ns);
-    }
-    for (size_t c = 0; c < num_cameras; ++c) {
-      std::vector<const Keypoints3D*> keypoints;
-      keypoints.reserve(clip.size());
-      for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints);
-      const std::vector<double> exchanged = exchanged_sides(keypoints, times);
-      for (size_t t = 0; t < clip.size(); ++t) {
-        exchanged_[t] = std::max(exchanged_[t], exchanged[t]);
-        if (exchanged[t] <= kExchanged) continue;
-        ClipInstant& changed = changed_.try_emplace(t, clip[t]).first->second;
-        instants_[t] = &changed;
-        changed.observations[c].keypoints = {};
-        changed.observations[c].landmarks.clear();
-      }
-    }
-  }
-  JudgedClip(const JudgedClip&) = delete;
-  JudgedClip& operator=(const JudgedClip&) = delete;
-
-  [[nodiscard]] size_t size() const { return instants_.size(); }
-  [[nodiscard]] const ClipInstant& operator[](size_t t) const { return *instants_[t]; }
-  [[nodiscard]] std::span<const ClipInstant* const> instants() const { return instants_; }
-  // How probably the network exchanged left and right, of the camera where that is most probable.
-  [[nodiscard]] double exchanged(size_t t) const { return exchanged_[t]; }
-
- private:
-  std::vector<const ClipInstant*> instants_;  // [T]
-  std::map<size_t, ClipInstant> changed_;     // by instant
-  std::vector<double> exchanged_;             // [T]
 };
 
 class ClipTracker {
