@@ -1,4 +1,4 @@
-// The fast renderer against the plain one, pixel by pixel: what has to hold before anything is timed.
+// The fast renderer against the plain one, pixel by pixel: a precondition of every timing.
 // Threads: one at a time; works on all cores.
 #pragma once
 

@@ -1,5 +1,5 @@
-// What silpose_bench measures, one function a figure: each checks its result, then times it next to its peers in so
-// many rounds. Errors: throw std::runtime_error for a wrong result or data that is not there.
+// What silpose_bench measures, one function per figure: each checks its result, then times it next to its peers in the
+// given number of rounds. Errors: throw std::runtime_error for a wrong result or missing data.
 #pragma once
 
 #include "figure.h"

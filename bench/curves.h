@@ -1,4 +1,4 @@
-// What poses to pixel-count distances cost against triangles, window size and particles, and what bounds it.
+// The cost of computing pixel-count distances of poses, against triangles, window size and particles, and its bounds.
 // Threads: one at a time.
 #pragma once
 
@@ -6,8 +6,8 @@
 
 namespace silpose::bench {
 
-// Writes triangles.csv, window.csv, particles.csv and README.md, which reads them, into a folder that is made where it
-// is missing; medians of `rounds` rounds, in each of which every point is measured once.
+// Writes triangles.csv, window.csv, particles.csv and README.md, which interprets them, into a folder that is made
+// where it is missing; medians of `rounds` rounds, in each of which every point is measured once.
 // Errors: throws std::runtime_error for a wrong result, a missing body, or a file that cannot be written.
 void write_curves(const std::filesystem::path& folder, int rounds);
 

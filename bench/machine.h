@@ -1,4 +1,4 @@
-// What this machine can do at most, measured: the bounds that curves are held against. One thread.
+// The measured peak performance of this machine: the bounds that curves are compared with. One thread.
 // Threads: pure functions.
 #pragma once
 
@@ -10,7 +10,7 @@ namespace silpose::bench {
 struct MachineBounds {
   double clock_hz = 0;             // from a chain of additions
   double multiply_adds_per_s = 0;  // single precision, the best instruction set
-  double bytes_per_s = 0;          // read again and again from a working set of the size asked for
+  double bytes_per_s = 0;          // read repeatedly from a working set of the requested size
 };
 MachineBounds measure_machine(size_t working_set_bytes);
 

@@ -49,7 +49,7 @@ nlohmann::ordered_json json_of(const PeerFigure& peer) {
           {"processor_ratio", peer.processor_ratio}};
 }
 
-// The chief peer's figures stand beside ours (null without any), the other peers' in a list.
+// The main peer's figures are next to ours (null without any), the other peers' in a list.
 nlohmann::ordered_json json_of(const Figure& figure) {
   nlohmann::ordered_json json = {{"value", figure.value}, {"unit", figure.unit}};
   if (figure.peers.empty()) {
@@ -103,7 +103,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> names, known;
   for (const Entry& entry : kEntries) known.emplace_back(entry.name);
   app.add_flag("--json", as_json, "One JSON object on standard output");
-  app.add_option("--rounds", rounds, "All take turns so many times; medians are told")
+  app.add_option("--rounds", rounds, "All take turns this many times; medians are reported")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
   app.add_option("--curves", curves,

@@ -1,5 +1,5 @@
-// SilhouetteScene: the work that every silhouette benchmark does: poses of a body before one camera, drawn into a
-// window of 128x128 or another size, compared with one observed silhouette. And the plain renderer's answer to it.
+// SilhouetteScene: the work that every silhouette benchmark does: poses of a body in front of one camera, drawn into a
+// window of 128x128 or another size, compared with one observed silhouette. And the plain renderer's result.
 // Threads: constant after construction.
 #pragma once
 

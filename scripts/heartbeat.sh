@@ -1,4 +1,4 @@
-# Sourced by the scripts beside it: a long command that says every 10 s how far it is.
+# Sourced by the scripts next to it: a long command that reports its progress every 10 s.
 
 readonly kHeartbeat_s=10
 

@@ -13,7 +13,7 @@ namespace silpose::app {
 namespace {
 
 constexpr int64_t kFramesToSearch = 200;
-constexpr int64_t kStepOfUnknown = 10;  // frames, where the video does not tell how many it has
+constexpr int64_t kStepOfUnknown = 10;  // frames, where the video's length is unknown
 constexpr size_t kBatch = 8;            // frames in memory at a time
 
 std::string board_text(const Board& board) {

@@ -15,7 +15,7 @@ namespace silpose::app {
 
 struct BoardSearch {
   std::vector<CameraSightings> cameras;  // [C] sightings by frame number
-  std::optional<int64_t> floor_instant;  // of the frame at floor_s, where somebody sees the board
+  std::optional<int64_t> floor_instant;  // of the frame at floor_s, where some camera sees the board
   int64_t num_searched = 0;              // frames
   std::vector<std::string> warnings;
 };

@@ -23,7 +23,7 @@ std::string without_dof(const std::string& model) {
   if (start == std::string::npos) return model;
   const size_t comma = model.find(',', start);
   const std::string dof = model.substr(start + 4, comma == std::string::npos ? comma : comma - start - 4);
-  if (dof != "37") throw UsageError(fmt::format("--model {}: dof={} is not there, only dof=37", model, dof));
+  if (dof != "37") throw UsageError(fmt::format("--model {}: dof={} is not supported, only dof=37", model, dof));
   std::string rest = model.substr(0, start);
   if (comma != std::string::npos) return rest + model.substr(comma + 1);
   if (rest.ends_with(',') || rest.ends_with(':')) rest.pop_back();

@@ -1,4 +1,4 @@
-// What the `model` commands tell of a body, and how they write one. Threads: the main thread only.
+// What the `model` commands report about a body, and how they write one. Threads: the main thread only.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -8,7 +8,7 @@
 namespace silpose::app {
 
 void add_levels(BodyModel& body, Console& console) {
-  // What tracking asks for: to rank starts, to sample, to fit poses, to fit bodies; and steps between.
+  // What tracking requests: to rank starts, to sample, to fit poses, to fit bodies; and steps between.
   constexpr std::array kVertices = {800, 1000, 1250, 1500, 2000, 2500, 3000, 5000};
   console.message("building its levels of detail");
   body.levels.clear();

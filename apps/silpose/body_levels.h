@@ -1,4 +1,4 @@
-// The levels of detail that a body is kept with, so that no command has to make them anew.
+// The levels of detail that are stored with a body, so that no command has to rebuild them.
 // Threads: the main thread only; works on all cores.
 #pragma once
 
@@ -8,12 +8,12 @@
 
 namespace silpose::app {
 
-// Makes the levels that tracking asks for, each with how much of its silhouettes it shares with the whole body's; in
-// place of those that the body has.
+// Makes the levels that tracking requests, each with the overlap of its silhouettes with the whole body's; replaces
+// those that the body has.
 void add_levels(BodyModel& body, Console& console);
 
-// The body's own level, the coarsest that shares so much, as coarsest_level(). Errors: none does, or it has none at
-// all.
+// The coarsest of the body's own levels with at least that overlap, as coarsest_level(). Errors: none does, or it has
+// none at all.
 Result<const BodyLevel*> choose_level(const BodyModel& body, double mean_iou);
 
 }  // namespace silpose::app

@@ -37,7 +37,7 @@ Board parse_board(const CalibrateOptions& options) {
   }
   if (options.videos.size() > 1 && !board.has_one_way_up()) {
     throw UsageError(
-        fmt::format("--board: {} looks the same upside down, and several cameras would mix it up; one "
+        fmt::format("--board: {} looks the same upside down, and several cameras would confuse it; one "
                     "number must be odd and one even",
                     options.board));
   }
@@ -58,10 +58,10 @@ std::vector<std::string> camera_names(const CalibrateOptions& options) {
   }
   for (size_t c = 0; c < names.size(); ++c) {
     if (names[c].empty() || names[c].find('/') != std::string::npos) {
-      throw UsageError(fmt::format("--camera-name: '{}' is no name", names[c]));
+      throw UsageError(fmt::format("--camera-name: '{}' is not a valid name", names[c]));
     }
     if (std::count(names.begin(), names.end(), names[c]) > 1) {
-      throw UsageError(fmt::format("two cameras would be named {}; say --camera-name once a video", names[c]));
+      throw UsageError(fmt::format("two cameras would be named {}; give --camera-name once per video", names[c]));
     }
   }
   return names;
@@ -120,20 +120,21 @@ Result<Outcome> run_calibrate(const CalibrateOptions& options, const CommonOptio
 
 Command add_calibrate(CLI::App& program, const CommonOptions& common) {
   const auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* const app = program.add_subcommand("calibrate", "Cameras from a printed chessboard moved before them");
+  CLI::App* const app = program.add_subcommand("calibrate", "Cameras from a printed chessboard moved in front of them");
   app->add_option(
          "VIDEO", options->videos,
-         "The board, tilted this way and that all over the picture; one a camera, in step, the same board in all")
+         "Videos of the board, tilted in all directions, all over the picture; one per camera, in step, same board")
       ->required();
   app->add_option("--out", options->out, "Calibration file (TOML) for --camera of the other commands")->required();
   app->add_option("--board", options->board, "Inner corners, COLUMNSxROWS")->capture_default_str();
   app->add_option("--square", options->square_mm, "Side of a square, mm")->check(within(0.1, 10'000));
-  app->add_option("--floor-frame", options->floor_s,
-                  "Seconds: when the board lies on the floor, y = 0; without it the first camera is taken to be level")
+  app->add_option(
+         "--floor-frame", options->floor_s,
+         "Seconds: when the board lies on the floor, y = 0; without it the first camera is assumed to be level")
       ->check(within(0, 1e6));
-  app->add_option("--fps", options->fps, "Frames a second of input that carries no rate (30, with a warning)")
+  app->add_option("--fps", options->fps, "Frames per second of input without a frame rate (30, with a warning)")
       ->check(within(0.1, 10'000));
-  app->add_option("--camera-name", options->names, "Name of a camera, once a video (default: the files' names)")
+  app->add_option("--camera-name", options->names, "Name of a camera, once per video (default: the files' names)")
       ->allow_extra_args(false);
   return {app, [options, &common](Console& console) { return run_calibrate(*options, common, console); }};
 }

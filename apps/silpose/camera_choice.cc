@@ -39,18 +39,20 @@ void add_camera_options(CLI::App& command, CameraOptions& options) {
   command.add_option(
       "--camera", options.file,
       "Calibration file (TOML); of one recorded clip without it, track estimates the camera from the person, "
-      "or, with assumed, takes it to be level and 1.5 m up");
-  command.add_option("--camera-name", options.names, "Which camera of the file, once a video")->allow_extra_args(false);
-  command.add_option("--camera-up", options.up, "Up axis of the file's world, where it does not say")
+      "or, with assumed, uses a level camera 1.5 m above the floor");
+  command.add_option("--camera-name", options.names, "Which camera of the file, once per video")
+      ->allow_extra_args(false);
+  command.add_option("--camera-up", options.up, "Up axis of the file's world, if the file does not specify it")
       ->check(CLI::IsMember({"y", "z"}));
-  command.add_option("--camera-unit", options.unit, "Unit of the file's lengths, where it does not say")
+  command.add_option("--camera-unit", options.unit, "Unit of the file's lengths, if the file does not specify it")
       ->check(CLI::IsMember({"m", "mm"}));
 }
 
 void add_focal_options(CLI::App& command, CameraOptions& options) {
   command
-      .add_option("--focal-mm35", options.focal_mm35,
-                  "Focal length without --camera FILE: 35 mm equivalent, by the picture's diagonal; kept as it is")
+      .add_option(
+          "--focal-mm35", options.focal_mm35,
+          "Focal length without --camera FILE: 35 mm equivalent, by the picture's diagonal; not estimated further")
       ->check(within(kShortest_mm35, kLongest_mm35));
   command
       .add_option("--fov-deg", options.fov_deg,
@@ -61,7 +63,7 @@ void add_focal_options(CLI::App& command, CameraOptions& options) {
 std::string focal_text(const Estimated& focal_px, const FocalSource& source) {
   if (source.prior.deviation == 0) return fmt::format("focal length {:.0f} px ({})", focal_px.mean, source.from);
   return fmt::format("focal length {:.0f} ± {:.0f} px ({})", focal_px.mean, focal_px.deviation,
-                     source.from == "metadata" ? "from the file's metadata" : "as phones and webcams have it");
+                     source.from == "metadata" ? "from the file's metadata" : "typical of phones and webcams");
 }
 
 nlohmann::ordered_json facts_of(const FocalSource& source) {

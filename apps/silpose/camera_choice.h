@@ -56,7 +56,7 @@ Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vec
 // "focal length 960 ± 192 px (as phones and webcams have it)", of an estimate or of what was known before.
 std::string focal_text(const Estimated& focal_px, const FocalSource& source);
 
-// {"mean", "std", "from"} in pixels: what was known before the clip was looked at.
+// {"mean", "std", "from"} in pixels: what was known before the clip was analysed.
 nlohmann::ordered_json facts_of(const FocalSource& source);
 
 }  // namespace silpose::app

@@ -12,7 +12,7 @@
 namespace silpose::app {
 namespace {
 
-// Frames that are looked at: so many a second, as medians over steps need, but no fewer and no more than that.
+// Frames that are examined: this many per second, as medians over steps need, but no fewer and no more than that.
 constexpr double kPerSecond = 4;
 constexpr int64_t kFewestSamples = 60, kMostSamples = 240;
 
@@ -23,7 +23,7 @@ int64_t num_samples(const ObservationSource& source) {
 
 struct Extents {
   std::vector<PersonExtent> whole;  // of frames that show the whole subject
-  int64_t num_frames = 0;           // looked at
+  int64_t num_frames = 0;           // examined
 };
 
 Result<Extents> read_extents(ObservationSource& source, Console& console) {
@@ -72,7 +72,7 @@ Result<void> estimate_camera_of(ObservationSource& source, double body_height_m,
   choice.estimating_s = stopwatch.seconds();
   if (!choice.estimate) {
     choice.warnings.push_back(
-        fmt::format("the camera was not estimated: too few of {} frames looked at show the subject whole and upright "
+        fmt::format("the camera was not estimated: too few of {} frames examined show the subject whole and upright "
                     "(whole: {})",
                     extents->num_frames, extents->whole.size()));
     return {};

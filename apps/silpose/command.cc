@@ -31,7 +31,7 @@ CLI::Validator within(double low, double high) {
 }
 
 void add_common_options(CLI::App& command, CommonOptions& common) {
-  command.add_option("--seed", common.seed, "Of all random numbers (same seed, same bytes)")
+  command.add_option("--seed", common.seed, "Seed of all random numbers (same seed, same bytes)")
       ->capture_default_str()
       ->check(CLI::Validator(
           [](const std::string& text) -> std::string {
@@ -68,7 +68,7 @@ std::vector<double> parse_numbers(const std::string& option, const std::string& 
     numbers.push_back(number);
   }
   if (numbers.size() != count || text.back() == ',') {
-    throw_usage("{}: {} numbers wanted, separated by commas, got {}", option, count, text);
+    throw_usage("{}: {} numbers expected, separated by commas, got {}", option, count, text);
   }
   return numbers;
 }

@@ -35,8 +35,8 @@ struct Outcome {
   nlohmann::ordered_json json;  // what --json prints
   std::string text;             // what is printed otherwise, without the last newline
   bool interrupted = false;     // exit 130
-  bool failed = false;          // exit 1: part of the work, told as an error already
-  bool is_answer = false;       // the text is what was asked for: printed under --quiet too
+  bool failed = false;          // exit 1: part of the work failed, reported as an error already
+  bool is_answer = false;       // the text is the requested output: printed with --quiet too
 };
 
 struct Command {

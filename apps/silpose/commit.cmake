@@ -1,5 +1,5 @@
-# cmake -DSOURCE=... -DOUT=... -P commit.cmake: writes a header that tells the commit this is built from. It is touched
-# only when that changes.
+# cmake -DSOURCE=... -DOUT=... -P commit.cmake: writes a header with the commit this is built from. It is touched only
+# when that changes.
 set(commit unknown)
 find_package(Git QUIET)
 if(GIT_FOUND)

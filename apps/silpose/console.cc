@@ -38,7 +38,7 @@ Console::~Console() { clear_line(); }
 void Console::watch_interrupts() {
   std::signal(SIGINT, on_interrupt);
   std::signal(SIGTERM, on_interrupt);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error of its writer, as on a full disk
+  std::signal(SIGXFSZ, SIG_IGN);  // exceeding the file size limit is a write error, as a full disk is
 }
 bool Console::interrupted() { return interrupt_asked.load(std::memory_order_relaxed); }
 

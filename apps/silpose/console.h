@@ -1,4 +1,4 @@
-// Console: what a person sees while a command works: messages and progress on stderr, and Ctrl-C.
+// Console: what the user sees while a command works: messages and progress on stderr, and Ctrl-C.
 // Threads: the main thread; the interrupt flag is set by a signal handler.
 #pragma once
 

@@ -17,7 +17,7 @@ struct EvaluateCommandOptions {
   EvaluateOptions evaluation;
 };
 
-// The body that a result was made with: the one fitted to its clip, or what its run.json says.
+// The body that a result was made with: the one fitted to its clip, or the one named in its run.json.
 std::string model_of(const std::filesystem::path& directory) {
   if (const auto fitted = directory / kFittedBodyFile; std::filesystem::exists(fitted)) return fitted.string();
   std::ifstream file(directory / "run.json");
@@ -64,8 +64,9 @@ Command add_evaluate(CLI::App& program, const CommonOptions&) {
   CLI::App* const app = program.add_subcommand("evaluate", "Errors of a result against a truth");
   app->add_option("--result", options->result, "Directory of a result")->required();
   app->add_option("--truth", options->truth, "Directory of a truth")->required();
-  app->add_option("--start", options->evaluation.start_s, "Seconds: only what is not before")->check(within(-1e6, 1e6));
-  app->add_option("--end", options->evaluation.end_s, "Seconds: only what is before")->check(within(-1e6, 1e6));
+  app->add_option("--start", options->evaluation.start_s, "Seconds: only frames at or after this")
+      ->check(within(-1e6, 1e6));
+  app->add_option("--end", options->evaluation.end_s, "Seconds: only frames before this")->check(within(-1e6, 1e6));
   app->add_option("--model", options->model, "The body of the result; default: its own")->check(is_model());
   return {app, [options](Console& console) { return run_evaluate(*options, console); }};
 }

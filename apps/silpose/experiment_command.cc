@@ -28,8 +28,8 @@ struct ExperimentOptions {
   bool list = false, quick = false, resume = false;
 };
 
-// Where the descriptions lie: experiments/ of the source tree this was built from, else
-// ../share/silpose/experiments beside the program.
+// The folder of the descriptions: experiments/ of the source tree this was built from, else
+// ../share/silpose/experiments next to the program.
 fs::path description_folder() {
   std::error_code failed;
   if (fs::exists(SILPOSE_EXPERIMENTS_DIR, failed)) return SILPOSE_EXPERIMENTS_DIR;
@@ -47,7 +47,7 @@ std::vector<fs::path> all_descriptions() {
   return files;
 }
 
-// NAME, or a path to a description of one's own.
+// NAME, or a path to a user's description.
 Result<fs::path> find_description(const std::string& name) {
   if (fs::path(name).extension() == ".toml") return fs::path(name);
   std::vector<std::string> known;
@@ -74,7 +74,7 @@ Result<Outcome> list_experiments(const ExperimentOptions& options) {
   return outcome;
 }
 
-// Motion-capture files and recorded clips that a grid needs: told before hours of work, not after.
+// Motion-capture files and recorded clips that a grid needs: missing ones are reported before hours of work, not after.
 Result<void> check_data_files(const Grid& grid, const fs::path& data) {
   for (const GridCell& cell : grid.cells) {
     if (cell.settings.is_recorded()) {
@@ -114,7 +114,7 @@ Result<std::vector<Grid>> read_grids(const ExperimentOptions& options) {
     if (!grid) return grid.failure();
     if (options.seeds) grid->seeds = *options.seeds;
     for (const Grid& other : grids) {
-      if (other.name == grid->name) throw UsageError(fmt::format("{}: is there twice", grid->name));
+      if (other.name == grid->name) throw UsageError(fmt::format("{}: given twice", grid->name));
     }
     const Result<void> found = check_data_files(*grid, options.data);
     if (!found) return found.failure();
@@ -125,7 +125,7 @@ Result<std::vector<Grid>> read_grids(const ExperimentOptions& options) {
 
 Result<Outcome> run_experiments(const ExperimentOptions& options, const CommonOptions& common, Console& console) {
   if (options.list) return list_experiments(options);
-  if (options.names.empty()) throw UsageError("NAME is missing; --list tells the experiments");
+  if (options.names.empty()) throw UsageError("NAME is missing; --list shows the experiments");
   if (options.out.empty()) throw UsageError("--out is missing");
   const Result<std::vector<Grid>> grids = read_grids(options);
   if (!grids) return grids.failure();
@@ -175,14 +175,13 @@ Result<Outcome> run_experiments(const ExperimentOptions& options, const CommonOp
 Command add_experiment(CLI::App& program, const CommonOptions& common) {
   const auto options = std::make_shared<ExperimentOptions>();
   CLI::App* const app = program.add_subcommand("experiment", "Run experiments and write their figures");
-  app->add_option("NAME", options->names,
-                  "Experiments, as --list tells them, or all, or .toml files that describe one");
-  app->add_option("--out", options->out, "Directory for the results, a folder each");
-  app->add_flag("--list", options->list, "Tell the experiments there are");
-  app->add_flag("--quick", options->quick, "A small part of each, to see that it works");
+  app->add_option("NAME", options->names, "Experiments named by --list, or all, or .toml files that describe one");
+  app->add_option("--out", options->out, "Directory for the results, one folder per experiment");
+  app->add_flag("--list", options->list, "List the available experiments");
+  app->add_flag("--quick", options->quick, "A small part of each, to check that it works");
   app->add_option("--seeds", options->seeds, "How many seeds, counted from --seed; default: as the experiment says")
       ->check(CLI::Range(1, 10'000));
-  app->add_flag("--resume", options->resume, "Go on from the runs in DIR.partial");
+  app->add_flag("--resume", options->resume, "Resume from the runs in DIR.partial");
   app->add_option("--data", options->data,
                   "Folder of motion-capture files or recorded clips, for experiments that need them");
   return {app, [options, &common](Console& console) { return run_experiments(*options, common, console); }};

@@ -52,10 +52,11 @@ Result<ExperimentDirectory> ExperimentDirectory::create(const fs::path& director
   std::error_code failed;
   for (const fs::path& path : {made.final_, made.partial_}) {
     if (fs::exists(path, failed) && !fs::is_directory(path, failed)) {
-      return error("{}: is there and is not a directory", path.string());
+      return error("{}: exists and is not a directory", path.string());
     }
     const auto foreign = foreign_entry(path, path == made.final_);
-    if (foreign) return error("{}: holds something else than experiments ({}); left alone", path.string(), *foreign);
+    if (foreign)
+      return error("{}: holds something other than experiments ({}); left unchanged", path.string(), *foreign);
   }
   if (!resume) fs::remove_all(made.partial_, failed);
   fs::create_directories(made.partial_, failed);

@@ -1,6 +1,6 @@
-// ExperimentDirectory: experiments under DIR, one folder each. They are made in DIR.partial, where finished runs wait
-// for --resume, and moved to DIR/NAME when all is whole; other experiments in DIR stay. A DIR that holds anything
-// else is refused.
+// ExperimentDirectory: experiments under DIR, one folder each. They are made in DIR.partial, where finished runs are
+// kept for --resume, and moved to DIR/NAME when all are complete; other experiments in DIR stay. A DIR that holds
+// anything else is refused.
 // Threads: the main thread only.
 #pragma once
 

@@ -1,4 +1,4 @@
-// silpose model: body models: which there are, build one, look into one, make one coarser, fit one to a subject.
+// silpose model: body models: list them, build one, inspect one, make one coarser, fit one to a subject.
 #include <fmt/format.h>
 
 #include <memory>
@@ -75,21 +75,21 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
   CLI::App* const model = program.add_subcommand("model", "Body models");
   model->require_subcommand(1);
 
-  CLI::App* const list = model->add_subcommand("list", "Which models there are");
+  CLI::App* const list = model->add_subcommand("list", "List the models");
   CLI::App* const build = model->add_subcommand("build", "Build a body and write it as a .body file");
   add_model_option(*build, options->model);
   add_body_file_option(*build, options->out);
   build->add_flag("--if-older", options->if_older,
-                  "Only where the file is missing, older than the program or the data, or has joints placed otherwise");
+                  "Only where the file is missing, older than the program or the data, or has joints in other places");
   CLI::App* const inspect = model->add_subcommand("inspect", "What a body is made of, and the limits of its DOF");
-  inspect->add_option("MODEL,--model", options->model, "As --model elsewhere")
+  inspect->add_option("MODEL,--model", options->model, "As --model of other commands")
       ->capture_default_str()
       ->check(is_model());
   CLI::App* const lod =
       model->add_subcommand("lod", "The same body with its levels of detail, or one of them as a body");
   add_model_option(*lod, options->model);
   add_body_file_option(*lod, options->out);
-  CLI::Option* const vertices = lod->add_option("--vertices", options->vertices, "Only the level of about as many")
+  CLI::Option* const vertices = lod->add_option("--vertices", options->vertices, "Only the level of about this many")
                                     ->check(CLI::Range(100, 20000));
   lod->add_option("--iou", options->iou,
                   "Only the coarsest level whose silhouettes share this much with the whole body's, on average")

@@ -32,7 +32,7 @@ Result<std::vector<ClipInstant>> read_clip_of(ObservationSource& source, Console
 Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, Console& console) {
   if (options.input.videos.empty()) throw UsageError("VIDEO is missing");
   if (!options.camera.has_file()) {
-    throw UsageError("--camera is missing: a body is fitted with cameras that are known, one with its floor");
+    throw UsageError("--camera is missing: fitting a body needs calibrated cameras, a single one with its floor");
   }
   const std::filesystem::path folder = std::filesystem::absolute(options.out).parent_path();
   if (!std::filesystem::is_directory(folder))
@@ -65,7 +65,7 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
   warnings.insert(warnings.end(), of_input.begin(), of_input.end());
   if (fit->lengths.empty()) {
     warnings.emplace_back(
-        "one camera without keypoints tells the size of a subject on the floor, and neither bones nor girths; "
+        "one camera without keypoints determines only the size of a subject on the floor, not bones or girths; "
         "--segmenter learned finds keypoints, and two cameras need none");
   }
   for (const std::string& warning : warnings) console.warning(warning);

@@ -17,7 +17,7 @@
 namespace silpose::app {
 namespace {
 
-// One value for all cameras, or one a camera; `fallback` where none is given.
+// One value for all cameras, or one per camera; `fallback` where none is given.
 std::string of_camera(const std::string& option, const std::vector<std::string>& values, size_t camera,
                       size_t num_cameras, const std::string& fallback) {
   if (values.empty()) return fallback;
@@ -98,7 +98,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
       .add_option(
           "--segmenter", options.segmenter,
           "How the person is cut out: masks (given), background, learned (by a network), chroma, depth, or auto: "
-          "the first of masks and background that is asked for, otherwise learned if scripts/fetch-network-data "
+          "the first of masks and background that is requested, otherwise learned if scripts/fetch-network-data "
           "has run")
       ->capture_default_str()
       ->check(CLI::IsMember({"auto", "background", "chroma", "depth", "learned", "masks"}));
@@ -112,28 +112,31 @@ void add_input_options(CLI::App& command, InputOptions& options) {
       ->capture_default_str()
       ->check(is_key_colour());
   command
-      .add_option("--depth", options.depths,
-                  "With depth, and with background beside its colours: a folder or pattern of 16-bit pictures in mm, "
-                  "one a frame, once a camera")
+      .add_option(
+          "--depth", options.depths,
+          "With depth, and with background to add to its colours: a folder or pattern of 16-bit pictures in mm, "
+          "one per frame, once per camera")
       ->allow_extra_args(false);
   command.add_option("--depth-range", options.depth_range,
-                     "MIN,MAX in metres: what lies between is the person; without, what stands before the scene");
-  command.add_option("--masks", options.masks, "Masks made elsewhere: a folder, a pattern or a video, once a camera")
+                     "MIN,MAX in metres: what lies between is the person; without, what is in front of the scene");
+  command.add_option("--masks", options.masks, "Masks made elsewhere: a folder, a pattern or a video, once per camera")
       ->allow_extra_args(false);
   command
       .add_option("--region", options.regions,
                   "x,y,w,h in pixels: a blob counts only if at least half of it lies inside; it is not cut")
       ->allow_extra_args(false);
-  command.add_option("--garbage-mask", options.garbage_masks, "A picture: what is not white in it is cut away")
+  command
+      .add_option("--garbage-mask", options.garbage_masks,
+                  "A picture: what is not white in it is removed from the mask")
       ->allow_extra_args(false);
-  command.add_option("--grow", options.grow_px, "Grows the mask by so many pixels; negative shrinks")
+  command.add_option("--grow", options.grow_px, "Grows the mask by this many pixels; negative shrinks")
       ->capture_default_str()
       ->check(CLI::Range(-64, 64));
   command
       .add_option("--min-blob", options.min_blob_px, "Pixels below which a blob does not count (0.05 % of the picture)")
       ->check(CLI::Range(0, 100'000'000));
   command
-      .add_option("--fps", options.default_fps, "Frames a second of input that carries no rate (30, with a warning)")
+      .add_option("--fps", options.default_fps, "Frames per second of input without a frame rate (30, with a warning)")
       ->check(within(0.1, 10000));
   command.add_option("--start", options.start_s, "Seconds (time_s of the results) to begin at")->check(within(0, 1e6));
   command.add_option("--end", options.end_s, "Seconds to end at, included")->check(within(0, 1e6));
@@ -269,7 +272,7 @@ void ObservationSource::read_ahead() {
     to->prepare_s = stopwatch.seconds();
     return {};
   });
-  check(given.ok(), "ObservationSource: its jobs tell their failures otherwise");
+  check(given.ok(), "ObservationSource: its jobs report their failures elsewhere");
 }
 
 Result<ObservationSource::Read> ObservationSource::read_frame() {
@@ -307,12 +310,12 @@ Result<std::optional<Instant>> ObservationSource::read(bool segments) {
       if (Console::interrupted()) return std::optional<Instant>();
       continue;
     }
-    for (const Observation& seen : instant.observations) {  // restore() makes it good where they are skipped
+    for (const Observation& seen : instant.observations) {  // restore() sets it where they are skipped
       num_seen_ += seen.trust.nothing_found ? 0 : 1;
       num_cut_ += seen.trust.touches_border ? 1 : 0;
     }
     instant.frame = std::move(**frame);
-    if (segments && !video_->is_live()) read_ahead();  // a live picture should be the newest there is
+    if (segments && !video_->is_live()) read_ahead();  // a live picture should be the newest one
     return std::optional<Instant>(std::move(instant));
   }
 }
@@ -348,7 +351,7 @@ bool ObservationSource::finds_landmarks() const {
 }
 
 std::vector<std::string> ObservationSource::warnings() const {
-  (void)ahead_->finish();  // what it failed with is next()'s to tell
+  (void)ahead_->finish();  // next() reports its failure
   std::vector<std::string> all = warnings_;
   for (const auto& segmenter : segmenters_) {
     const std::vector<std::string> own = segmenter->warnings();

@@ -1,6 +1,5 @@
 // ObservationSource: from the videos and the options of a command to one observation a camera and instant.
-// The next frame of a recording is read, and what of its masks can be told already is found, while the last one is
-// tracked.
+// The next frame of a recording is read, and its segmentation is begun, while the last one is tracked.
 // Threads: the main thread only; segmentation itself uses all cores.
 #pragma once
 
@@ -56,7 +55,7 @@ class ObservationSource {
   // From here on about `count` instants are given, evenly over the clip; the others are not segmented.
   void thin_out_to(int64_t count);
 
-  // Where the subject is expected in the next pictures: [C], or empty where nobody knows.
+  // Where the subject is expected in the next pictures: [C], or empty where unknown.
   void expect(std::vector<Mask> silhouettes);
 
   // The next instant to be tracked, nothing at the end. Errors: those of the video and of the segmenter.
@@ -67,7 +66,8 @@ class ObservationSource {
   // Back to the first instant, as if none had been given; what was learned is not learned again. Errors: as open().
   Result<void> rewind(Console& console);
 
-  // What next() carries on. Another source of the same options that skipped as many goes on from it as this one would.
+  // What next() carries from call to call. Another source with the same options that skipped as many instants continues
+  // from it as this one would.
   // Errors: restore() throws std::invalid_argument for what is no such state.
   [[nodiscard]] std::string state() const;
   void restore(std::string_view state);

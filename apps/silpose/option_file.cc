@@ -13,7 +13,8 @@
 namespace silpose::app {
 namespace {
 
-// Of the run rather than of the method: not for a file that others start from. What --iou chose is kept as vertices.
+// Options of the run rather than of the method: not for a file to start other runs from. What --iou chose is kept as
+// vertices.
 constexpr std::array<std::string_view, 9> kNotKept = {"help", "config",  "iou",  "json",  "quiet",
                                                       "out",  "threads", "each", "resume"};
 

@@ -1,5 +1,5 @@
-// Options as a TOML file: `--config FILE.toml` reads it, and the one used is written beside the result. Keys are option
-// names without dashes in front; what is on the command line wins.
+// Options as a TOML file: `--config FILE.toml` reads it, and the options used are written with the result. Keys are
+// option names without dashes in front; what is on the command line wins.
 // Threads: the main thread only.
 #pragma once
 

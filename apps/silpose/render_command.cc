@@ -78,7 +78,7 @@ Result<void> write_depth(const std::filesystem::path& path, const Image<float>& 
 }
 
 Result<Outcome> run_render(const RenderOptions& options, Console& console) {
-  if (std::filesystem::path(options.out).extension() != ".png") throw UsageError("--out: a .png file is wanted");
+  if (std::filesystem::path(options.out).extension() != ".png") throw UsageError("--out: must be a .png file");
   if (options.draw_floor && options.kind != "shaded") throw UsageError("--draw-floor: needs --kind shaded");
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
   if (!body) return body.failure();
@@ -118,7 +118,7 @@ Command add_render(CLI::App& program, const CommonOptions&) {
       ->capture_default_str()
       ->check(CLI::IsMember({"silhouette", "depth", "shaded"}));
   app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels, without --camera")->capture_default_str();
-  app->add_option("--view", options->view, "front, side, or degrees round the subject, without --camera");
+  app->add_option("--view", options->view, "front, side, or degrees around the subject, without --camera");
   app->add_flag("--draw-floor", options->draw_floor, "Of a shaded picture: the floor y = 0 in 1 m squares, footprints");
   add_model_option(*app, options->model);
   add_camera_options(*app, options->camera);

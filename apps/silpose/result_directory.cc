@@ -35,7 +35,7 @@ bool is_mask_folder(const fs::path& folder) {
   return !failed;
 }
 
-// What a track is gone on from.
+// What a track resumes from.
 bool is_for_resuming(const std::string& name) { return name == kCheckpointFile || name.starts_with(kConfidenceFolder); }
 
 bool is_own(const fs::directory_entry& entry) {
@@ -83,10 +83,10 @@ Result<ResultDirectory> ResultDirectory::create(const fs::path& directory, bool 
   for (const fs::path& path : {result.final_, partial}) {
     const fs::file_status status = fs::status(path, failed);
     if (!fs::exists(status)) continue;
-    if (!fs::is_directory(status)) return error("{}: is there and is not a directory", path.string());
+    if (!fs::is_directory(status)) return error("{}: exists and is not a directory", path.string());
     const std::optional<std::string> foreign = foreign_content(path, path == result.final_);
     if (foreign)
-      return error("{}: holds something else than a result of silpose ({}); left alone", path.string(), *foreign);
+      return error("{}: holds something other than a result of silpose ({}); left unchanged", path.string(), *foreign);
   }
   result.stays_ = resume && fs::exists(partial / kCheckpointFile, failed);
   if (!result.stays_) fs::remove_all(partial, failed);

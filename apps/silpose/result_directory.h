@@ -15,7 +15,7 @@ namespace silpose::app {
 
 class ResultDirectory {
  public:
-  // Makes DIR.partial, empty. With `resume` what is there stays, even where the work fails, if it can be gone on from.
+  // Makes DIR.partial, empty. With `resume` what is there stays, even where the work fails, if it can be resumed from.
   // Errors: DIR is a file or holds something else; not writable.
   static Result<ResultDirectory> create(const std::filesystem::path& directory, bool resume = false);
 
@@ -44,14 +44,14 @@ class ResultDirectory {
   bool stays_ = false;                     // partial_ was there before
 };
 
-// Whether a finished result of silpose lies there.
+// Whether it holds a finished result of silpose.
 bool is_whole_result(const std::filesystem::path& directory);
 
-// What directory holds that silpose does not write; nothing when it could be replaced. An absent or empty directory
-// can.
+// What the directory holds that silpose does not write; nothing when it may be replaced. An absent or empty directory
+// may.
 std::optional<std::string> foreign_content(const std::filesystem::path& directory, bool must_be_whole);
 
-// Writes a single file beside its final name, then renames it: `write` gets the temporary path, which ends in the same
+// Writes a single file next to its final name, then renames it: `write` gets the temporary path, which ends in the same
 // extension. Errors: those of `write`; not writable.
 Result<void> write_whole(const std::filesystem::path& file,
                          const std::function<Result<void>(const std::filesystem::path&)>& write);

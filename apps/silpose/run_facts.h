@@ -1,4 +1,4 @@
-// run.json and config.toml: what was run and what came of it, in every result directory.
+// run.json and config.toml: what was run and its outcome, in every result directory.
 // Threads: the main thread only.
 #pragma once
 
@@ -21,7 +21,7 @@ nlohmann::ordered_json run_facts(const CommonOptions& common);
 std::string machine_name();
 
 // How a command that makes a directory ends: writes config.toml (write_option_file()) and run.json, and renames the
-// directory to its final name, or leaves DIR.partial and says so where the work was interrupted.
+// directory to its final name, or leaves DIR.partial, with a message, where the work was interrupted.
 // Errors: not writable, cannot be renamed.
 Result<Outcome> deliver(ResultDirectory& directory, const CLI::App& command,
                         const std::map<std::string, std::string>& chosen, Outcome outcome, Console& console);

@@ -20,12 +20,12 @@ struct SegmentOptions {
 Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, const CommonOptions& common,
                             Console& console) {
   if (options.out.empty()) throw UsageError("--out is missing");
-  if (options.input.videos.size() > 1) throw UsageError("VIDEO: one at a time");
+  if (options.input.videos.size() > 1) throw UsageError("VIDEO: only one is allowed");
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
   if (!directory) return directory.failure();
   Result<ObservationSource> source = ObservationSource::open(options.input, console);
   if (!source) return source.failure();
-  std::error_code failed;  // which the first mask would tell
+  std::error_code failed;  // the first mask would report it
   std::filesystem::create_directories(directory->path() / "masks", failed);
 
   int64_t frames = 0, empty = 0;

@@ -18,8 +18,8 @@ namespace silpose::app {
 std::vector<std::vector<double>> poses_as_given(const TrackerOptions& tracker, std::span<const ClipInstant> clip,
                                                 Console& console, const ClipResume& resume = {});
 
-// From these poses fits the body (body_fit.h). Nothing where the clip does not tell (why_not_fitted), or when
-// interrupted.
+// From these poses fits the body (body_fit.h). Nothing where the clip does not determine the body (why_not_fitted), or
+// when interrupted.
 std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<const ClipInstant> clip,
                                    std::span<const std::vector<double>> poses, Console& console);
 

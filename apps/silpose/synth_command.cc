@@ -24,7 +24,7 @@ struct SynthOptions {
   bool colour = false;
 };
 
-// Cameras of a file in place of those that stand around the path.
+// Cameras of a file in place of those around the path.
 Result<void> use_camera_file(const CameraOptions& options, SyntheticSequence& sequence) {
   Result<CameraChoice> chosen = choose_cameras(options, {});
   if (!chosen) return chosen.failure();
@@ -46,7 +46,7 @@ Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions&
     const Result<View> view = parse_view(text);
     if (!view) throw UsageError(fmt::format("--view: {}", view.error().message));
     for (const View& other : scene.views) {
-      if (other.name == view->name) throw UsageError(fmt::format("--view: {} is there twice", text));
+      if (other.name == view->name) throw UsageError(fmt::format("--view: {} is given twice", text));
     }
     scene.views.push_back(*view);
   }
@@ -138,21 +138,21 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
   app->add_option("--motion", options->motion,
                   "FILE.bvh, FILE.txt (humanoid3d), static, dof:INDEX, circle, sway or random")
       ->capture_default_str();
-  app->add_option("--amplitude-deg", options->amplitude_deg, "How far sway, circle and random go")
+  app->add_option("--amplitude-deg", options->amplitude_deg, "Amplitude of sway, circle and random")
       ->check(within(0, 180));
-  app->add_option("--period", options->period_s, "Seconds a swing takes")->check(within(0.01, 1e6));
+  app->add_option("--period", options->period_s, "Seconds per swing")->check(within(0.01, 1e6));
   app->add_option("--frames", options->frames, "Of the motion; default 80, or the whole of a motion file")
       ->check(CLI::Range(1, 1'000'000));
-  app->add_option("--fps", options->fps, "Frames a second")->capture_default_str()->check(within(0.1, 10000));
-  app->add_option("--view", options->views, "front, side, or degrees round the subject; repeat it for several cameras")
+  app->add_option("--fps", options->fps, "Frames per second")->capture_default_str()->check(within(0.1, 10000));
+  app->add_option("--view", options->views, "front, side, or degrees around the subject; repeat it for several cameras")
       ->allow_extra_args(false);
   app->add_option("--size", options->size, "WIDTHxHEIGHT in pixels")->capture_default_str();
   add_camera_options(*app, options->camera);
   app->add_flag("--colour", options->colour, "Also a shaded video.mp4");
-  app->add_option("--backdrop", options->backdrop, "What is behind: textured or green")
+  app->add_option("--backdrop", options->backdrop, "The background: textured or green")
       ->capture_default_str()
       ->check(CLI::IsMember({"textured", "green"}));
-  app->add_option("--lead-in", options->lead_in, "Frames of the video before the subject is there")
+  app->add_option("--lead-in", options->lead_in, "Frames of the video before the subject appears")
       ->check(CLI::Range(0, 100'000));
   app->add_option("--noise", options->noise,
                   "Faults of the masks written: none, shadow, edge, limb or hole; poses, joints and video stay true")

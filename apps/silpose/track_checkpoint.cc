@@ -25,7 +25,7 @@ std::string bytes_of(const BodyModel& body) {
   return bytes;
 }
 
-// The first thing of which one list has another value, or which one lacks.
+// The first entry that differs between the lists, or that one of them lacks.
 std::optional<std::string> difference(const OptionLines& earlier, const OptionLines& now) {
   const auto value_in = [](const OptionLines& lines, const std::string& key) {
     const auto found = std::ranges::find(lines, key, &OptionLines::value_type::first);
@@ -87,12 +87,12 @@ Result<std::optional<TrackCheckpoint>> read_checkpoint(const std::filesystem::pa
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) return std::optional<TrackCheckpoint>();
   const Result<std::string> bytes = read_checked_file(path, kCheckpoint);
-  if (!bytes) return error("--resume: {}; without --resume the clip is tracked anew", bytes.error().message);
+  if (!bytes) return error("--resume: {}; without --resume the clip is tracked from the start", bytes.error().message);
   OptionLines earlier;
   std::string state;
   if (!from_bytes(*bytes, earlier, state)) return error("--resume: {}: malformed", path.string());
   if (const std::optional<std::string> other = difference(earlier, made_with)) {
-    return error("--resume: {} goes on only as it began; {}", folder.string(), *other);
+    return error("--resume: {} can only be resumed as it was started; {}", folder.string(), *other);
   }
   std::optional<TrackCheckpoint> checkpoint(std::in_place);
   if (!from_bytes(state, *checkpoint)) return error("--resume: {}: malformed", path.string());

@@ -1,4 +1,4 @@
-// TrackCheckpoint: what an interrupted track goes on from, a file in DIR.partial beside the masks of the frames done:
+// TrackCheckpoint: what an interrupted track resumes from, a file in DIR.partial next to the masks of the frames done:
 // what it was made with, the reports so far, and what tracker and segmenters carry from frame to frame.
 // Threads: values and functions without state.
 #pragma once
@@ -25,7 +25,7 @@ namespace silpose::app {
 inline constexpr std::string_view kCheckpointFile = "checkpoint.bin";
 
 // Seconds by stage. `camera` (estimating it) and `background` were spent before the first frame, `start` on finding a
-// starting pose, `smooth` on tracking a clip as a whole, which is not told apart further.
+// starting pose, `smooth` on tracking a clip as a whole, which is not divided further.
 struct StageSeconds {
   double camera = 0, background = 0, decode = 0, segment = 0, start = 0, propagate = 0, likelihood = 0, resample = 0,
          smooth = 0, write = 0;
@@ -45,7 +45,7 @@ struct TrackCheckpoint {
   std::vector<std::vector<BesideMask>> seen;     // [T][C] of a clip that is tracked as a whole
   std::vector<std::vector<double>> given_poses;  // [T][D] of the body as given, where it is fitted; empty: not yet
   std::vector<StepReport> reports;               // of each frame online, and of the whole clip once it is tracked
-  std::string tracker;                           // Tracker::state(), or what track_clip() told; empty: not begun
+  std::string tracker;                           // Tracker::state(), or what track_clip() gave; empty: not begun
   StageSeconds seconds;
   double loop_s = 0;
 
@@ -55,10 +55,10 @@ struct TrackCheckpoint {
   }
 };
 
-// What a track must have in common with the one it goes on from: options, the cameras and the body, the program.
+// What a track must have in common with the one it resumes: options, the cameras and the body, the program.
 OptionLines made_with(OptionLines options, const std::vector<PinholeCamera>& cameras, const BodyModel& body);
 
-// Of some rows of all pictures: quick, and no other clip has the same.
+// Of some rows of all pictures: fast, and different for any other clip.
 uint32_t picture_checksum(const Frame& frame);
 
 // Errors: not writable; the earlier one stays.

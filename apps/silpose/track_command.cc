@@ -28,7 +28,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
   if (!body) return body.failure();
   const auto pose =
-      read_initial_pose(options, (*body)->skeleton, 0);  // what is wrong with it is told before the clip is read
+      read_initial_pose(options, (*body)->skeleton, 0);  // errors in it are reported before the clip is read
   if (!pose) return pose.failure();
   Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
   if (!cameras) return cameras.failure();
@@ -49,7 +49,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
   if (options.resume) {
     auto earlier = read_checkpoint(resume.folder, resume.made_with);
     if (!earlier) return earlier.failure();
-    if (!*earlier && !options.each) console.message(fmt::format("{}: nothing to go on from", resume.folder.string()));
+    if (!*earlier && !options.each) console.message(fmt::format("{}: nothing to resume from", resume.folder.string()));
     resume.earlier = std::move(*earlier);
   }
   if (options.init == "landmarks" && !source->finds_landmarks()) {
@@ -75,8 +75,8 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
   const bool knows_size = tracked->body_fit && tracked->body_fit->size;
   if (cameras->cameras.size() == 1 && !knows_size && tracked->used.size_deviation > 0) {
     warnings.push_back(fmt::format(
-        "--model {}: {:.2f} m is assumed, for no height is given; nine in ten people are within {:.0f} % of "
-        "it, and distances as far off as that",
+        "--model {}: a height of {:.2f} m is assumed, as none is given; 90 % of people are within {:.0f} % of "
+        "it, and distances may be off by as much",
         options.model, (*body)->height_m, 100 * kSpreadsOf90Percent * tracked->used.size_deviation));
   }
   const bool is_recorded = !tracked->recording.steps.empty();
@@ -84,12 +84,12 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
     warnings.emplace_back("no person was seen: there is no pose in this result");
   }
   for (const std::string& warning : warnings) console.warning(warning);
-  const TrackTold told{options, common, *cameras, writer, *source, *tracked, warnings};
+  const FinishedTrack finished{options, common, *cameras, writer, *source, *tracked, warnings};
   if (is_recorded) {
-    const Result<void> written = write_track_report(told, directory->path());
+    const Result<void> written = write_track_report(finished, directory->path());
     if (!written) return written.failure();
   }
-  Outcome outcome = track_outcome(told, tracked->interrupted ? directory->path() : directory->final_path());
+  Outcome outcome = track_outcome(finished, tracked->interrupted ? directory->path() : directory->final_path());
   return deliver(*directory, app, chosen_options(options, tracked->used), std::move(outcome), console);
 }
 

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// "walks/one.mp4" is "one"; a folder is called as it is.
+// "walks/one.mp4" is "one"; a folder keeps its name.
 std::string name_of(const std::string& video) {
   if (video.starts_with("camera:")) throw UsageError(fmt::format("--each: {} is live; give recorded clips", video));
   const fs::path path = fs::path(video).has_filename() ? fs::path(video) : fs::path(video).parent_path();
@@ -64,7 +64,7 @@ Result<Outcome> track_each(const TrackOptions& options, Console& console,
     Result<Outcome> tracked = track(of_clip);
     if (Console::interrupted()) {
       outcome.interrupted = true;
-      if (!tracked) console.error("interrupted; go on with --resume");
+      if (!tracked) console.error("interrupted; continue with --resume");
       break;
     }
     if (tracked) {

@@ -18,7 +18,7 @@ constexpr const char* kSampling = "Sampling filters (preset thesis, or with --pa
 
 void add_fitted_options(CLI::App& app, TrackOptions& options) {
   TrackerOptions& tracker = options.tracker;
-  app.add_option("--hypotheses", tracker.num_hypotheses, "Poses that are kept possible at a time (4; accurate: 8)")
+  app.add_option("--hypotheses", tracker.num_hypotheses, "Hypotheses (possible poses) kept at a time (4; accurate: 8)")
       ->check(CLI::Range(1, 64))
       ->group(kFitted);
   app.add_flag_function(
@@ -32,7 +32,7 @@ void add_fitted_options(CLI::App& app, TrackOptions& options) {
       ->group(kFitted);
   app.add_flag_function(
          "--floor,!--no-floor", [&tracker](int64_t count) { tracker.floor = count > 0; },
-         "The floor is y = 0: nothing lies below; smoothed, what stands does not slide (on with --camera)")
+         "The floor is y = 0: nothing lies below; with smoothing, what rests on it does not slide (on with --camera)")
       ->group(kFitted);
 }
 
@@ -46,12 +46,13 @@ void add_sampling_options(CLI::App& app, TrackOptions& options) {
   add("--motion", tracker.motion, "How particles move between frames")
       ->check(CLI::IsMember({"diffusion", "first-order-augmented"}));
   add("--sigma-deg", tracker.sigma_deg, "Noise of a typical joint angle in 1/30 s")->check(within(1e-3, 90));
-  add("--resampling", tracker.resampling, "Which particles go on")->check(CLI::IsMember({"systematic", "comb"}));
-  add("--resample-below", options.resample_below, "Only when n_eff is below this part of the particles (1)")
+  add("--resampling", tracker.resampling, "Which particles survive")->check(CLI::IsMember({"systematic", "comb"}));
+  add("--resample-below", options.resample_below, "Only when n_eff is below this fraction of the particles (1)")
       ->check(within(0, 1));
-  add("--regenerate", tracker.regenerate, "Part of the comb's particles that is made anew")->check(within(0, 0.99));
+  add("--regenerate", tracker.regenerate, "Fraction of the particles that the comb regenerates")
+      ->check(within(0, 0.99));
   add("--regenerate-from", tracker.regenerate_from,
-      "What they are made from: random (about the estimate) or network (about the poses that it recognises)")
+      "Where regenerated particles come from: random (about the estimate) or network (about the poses it recognises)")
       ->check(CLI::IsMember({"random", "network"}));
   add("--sharpness", tracker.sharpness, "How strongly better silhouettes are preferred")->check(within(1e-3, 1e6));
   add("--metric", tracker.metric,
@@ -84,9 +85,9 @@ std::optional<std::string> sampling_option(const TrackOptions& options) {
 void add_track_options(CLI::App& app, TrackOptions& options) {
   add_input_options(app, options.input);
   app.add_option("--out", options.out, "Directory for the result");
-  app.add_flag("--each", options.each, "Every VIDEO is a clip of its own, its result in DIR/NAME");
+  app.add_flag("--each", options.each, "Every VIDEO is a separate clip, its result in DIR/NAME");
   app.add_flag("--resume", options.resume,
-               "Go on from what the same command, interrupted, left in DIR.partial; with --each, leave out clips that "
+               "Resume from what the same command, interrupted, left in DIR.partial; with --each, leave out clips that "
                "have a result already");
   add_model_option(app, options.model);
   add_camera_options(app, options.camera);
@@ -160,16 +161,16 @@ void check_together(const TrackOptions& options) {
 
 bool fits_body(const TrackOptions& options, bool finds_landmarks) {
   const bool one_camera = options.each || options.input.videos.size() == 1;
-  const bool tells_bones =
+  const bool bones_determined =
       options.evidence != "landmarks" && (!one_camera || (options.evidence == "both" && finds_landmarks));
-  if (options.fit_body.value_or(false) && !tells_bones && !options.camera.has_file()) {
+  if (options.fit_body.value_or(false) && !bones_determined && !options.camera.has_file()) {
     throw UsageError(
-        "--fit-body: one camera tells a body's bones by keypoints, which --segmenter learned finds, and its size by a "
+        "--fit-body: with one camera, bones need keypoints, which --segmenter learned finds, and the size needs a "
         "floor, which --camera gives");
   }
   const TrackerOptions resolved = options.tracker.resolved();
   return options.fit_body.value_or(options.tracker.preset == "accurate" && resolved.num_hypotheses &&
-                                   *resolved.smooth && tells_bones);
+                                   *resolved.smooth && bones_determined);
 }
 
 bool estimates_camera(const TrackOptions& options) {
@@ -189,7 +190,7 @@ Result<TrackerOptions> tracker_options(const TrackOptions& options, std::shared_
   tracker.cameras = std::move(cameras);
   tracker.seed = seed;
   tracker.size_deviation = size_deviation_of(options.model);
-  // Without a file the floor is a guess: where the camera was estimated, poses pressed on it came out worse, too.
+  // Without a file the floor is a guess: even where the camera was estimated, poses constrained to it were worse.
   if (!tracker.floor && !options.camera.has_file()) tracker.floor = false;
   tracker.evidence = options.evidence == "silhouette"  ? EvidenceKind::kSilhouette
                      : options.evidence == "landmarks" ? EvidenceKind::kKeypoints

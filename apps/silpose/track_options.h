@@ -33,24 +33,24 @@ void add_track_options(CLI::App& app, TrackOptions& options);
 // Throws UsageError for options that do not go together, before anything is read.
 void check_together(const TrackOptions& options);
 
-// Whether the body is fitted to the subject: where asked for, and by `accurate` where bones can be told. Throws
-// UsageError where it is asked for and nothing can be told.
+// Whether the body is fitted to the subject: where requested, and by `accurate` where bone lengths can be determined.
+// Throws UsageError where it is requested and nothing can be determined.
 bool fits_body(const TrackOptions& options, bool finds_landmarks);
 
 // Whether the camera is estimated: of one recorded clip without a calibration file.
 bool estimates_camera(const TrackOptions& options);
 
-// What the tracker is asked for, all but its first pose. Throws UsageError for what it refuses. Errors: no level of the
+// The tracker's options, all but its first pose. Throws UsageError for options that it rejects. Errors: no level of the
 // body's is as fine as --iou asks for.
 Result<TrackerOptions> tracker_options(const TrackOptions& options, std::shared_ptr<const BodyModel> body,
                                        std::vector<PinholeCamera> cameras, uint64_t seed);
 
-// The pose that --init names, of a frame of the clip, or the file's first where it does not have that frame. [D]
+// The pose that --init specifies for a frame of the clip, or the file's first pose where it lacks that frame. [D]
 // Nothing with `descent`. Errors: those of read_poses(); no pose in it.
 Result<std::optional<std::vector<double>>> read_initial_pose(const TrackOptions& options, const Skeleton& skeleton,
                                                              int64_t frame);
 
-// The tracker's options as they came out, by option name, for config.toml.
+// The tracker's resolved options, by option name, for config.toml.
 std::map<std::string, std::string> chosen_options(const TrackOptions& options, const TrackerOptions& used);
 
 }  // namespace silpose::app

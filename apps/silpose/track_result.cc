@@ -19,7 +19,7 @@ nlohmann::ordered_json figure(double mean, double std) {
 
 double frames_per_second(const Tracked& tracked) { return static_cast<double>(tracked.num_frames) / tracked.loop_s; }
 
-// What others read, where it was written.
+// Files for other programs, where they were written.
 constexpr std::pair<const char*, const char*> kDownloads[] = {
     {"poses.csv", "angles and root position of every frame"}, {"joints.csv", "joint positions, pixels and spread"},
     {"spread.csv", "standard deviation of every angle"},      {"motion.bvh", "the motion, for Blender and others"},
@@ -32,25 +32,26 @@ std::string line_of(const PinholeCamera& camera) {
                      camera.height, camera.fx, centre.x(), centre.y(), centre.z());
 }
 
-FactLines run_lines(const TrackTold& told) {
-  const std::string camera_file = told.options.camera.has_file() ? told.options.camera.file
-                                  : told.camera.estimate         ? "none: estimated"
-                                                                 : "none: assumed";
-  FactLines lines = {{"Command", told.common.command_line},
+FactLines run_lines(const FinishedTrack& finished) {
+  const std::string camera_file = finished.options.camera.has_file() ? finished.options.camera.file
+                                  : finished.camera.estimate         ? "none: estimated"
+                                                                     : "none: assumed";
+  FactLines lines = {{"Command", finished.common.command_line},
                      {"Version", SILPOSE_VERSION},
                      {"Machine", machine_name()},
-                     {"Body", told.writer.body().name},
+                     {"Body", finished.writer.body().name},
                      {"Camera file", camera_file}};
-  for (const PinholeCamera& camera : told.writer.cameras()) lines.emplace_back("Camera", line_of(camera));
-  lines.emplace_back("Preset", told.options.tracker.preset);
-  for (const auto& [name, value] : chosen_options(told.options, told.tracked.used)) lines.emplace_back(name, value);
-  lines.emplace_back("Seed", std::to_string(told.common.seed));
-  for (const std::string& line : told.tracked.doubtful) lines.emplace_back("Doubtful", line);
-  lines.emplace_back("Frames a second", fmt::format("{:.2f}", frames_per_second(told.tracked)));
+  for (const PinholeCamera& camera : finished.writer.cameras()) lines.emplace_back("Camera", line_of(camera));
+  lines.emplace_back("Preset", finished.options.tracker.preset);
+  for (const auto& [name, value] : chosen_options(finished.options, finished.tracked.used))
+    lines.emplace_back(name, value);
+  lines.emplace_back("Seed", std::to_string(finished.common.seed));
+  for (const std::string& line : finished.tracked.doubtful) lines.emplace_back("Doubtful", line);
+  lines.emplace_back("Frames per second", fmt::format("{:.2f}", frames_per_second(finished.tracked)));
   return lines;
 }
 
-// How the masks were made: what cut them out, and the options that were given to it.
+// How the masks were made: the segmenter and its options.
 FactLines mask_lines(const InputOptions& options, const ObservationSource& source) {
   FactLines lines = {{"Segmenter", source.background()}};
   const auto add = [&](const char* name, const std::vector<std::string>& values) {
@@ -70,19 +71,19 @@ FactLines mask_lines(const InputOptions& options, const ObservationSource& sourc
 
 }  // namespace
 
-Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder) {
-  const Tracked& tracked = told.tracked;
+Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path& folder) {
+  const Tracked& tracked = finished.tracked;
   const RecordingSummary summary = summarise(tracked.recording);
   Outcome outcome;
   outcome.interrupted = tracked.interrupted;
   nlohmann::ordered_json& run = outcome.json;
-  run = run_facts(told.common);
-  run["model"] = told.options.model;
-  run["body"] = told.writer.body().name;
+  run = run_facts(finished.common);
+  run["model"] = finished.options.model;
+  run["body"] = finished.writer.body().name;
   run["size_deviation"] = tracked.used.size_deviation;
   if (tracked.body_fit && !tracked.recording.steps.empty()) run["fitted"] = facts_of(*tracked.body_fit);
-  if (told.camera.focal) run["focal_prior"] = facts_of(*told.camera.focal);
-  if (told.camera.estimate) run["camera_estimate"] = facts_of(*told.camera.estimate);
+  if (finished.camera.focal) run["focal_prior"] = facts_of(*finished.camera.focal);
+  if (finished.camera.estimate) run["camera_estimate"] = facts_of(*finished.camera.estimate);
   run["frames"] = tracked.num_frames;
   run["frames_tracked"] = summary.frames_tracked;
   run["frames_coasted"] = summary.frames_coasted;
@@ -90,14 +91,14 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
   for (const auto& [stage, seconds] : tracked.seconds.list()) run["stages_s"][stage] = seconds;
   run["frames_per_second"] = frames_per_second(tracked);
   run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
-  run["background"] = told.source.background();
+  run["background"] = finished.source.background();
   run["start_by_landmarks"] = tracked.used.landmarks;
-  run["evidence"] = told.source.finds_landmarks() ? told.options.evidence : "silhouette";
+  run["evidence"] = finished.source.finds_landmarks() ? finished.options.evidence : "silhouette";
   run["cameras"] = nlohmann::ordered_json::array();
-  for (const PinholeCamera& camera : told.writer.cameras()) run["cameras"].push_back(camera.name);
+  for (const PinholeCamera& camera : finished.writer.cameras()) run["cameras"].push_back(camera.name);
   run["doubtful"] = tracked.doubtful;
-  run["warnings"] = told.warnings;
-  run["out"] = told.options.out;
+  run["warnings"] = finished.warnings;
+  run["out"] = finished.options.out;
 
   outcome.text = fmt::format("{} frames, {} tracked, {} coasted; {:.1f} frames a second\n", tracked.num_frames,
                              summary.frames_tracked, summary.frames_coasted, frames_per_second(tracked));
@@ -111,31 +112,31 @@ Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder
     outcome.text += fmt::format("overlay: {0}/overlay.mp4\nreport:  {0}/report.html", folder.string());
   }
   if (tracked.body_fit && !tracked.recording.steps.empty()) {
-    outcome.text +=
-        fmt::format("\nbody:    {}/{}, {:.3f} m tall", folder.string(), kFittedBodyFile, told.writer.body().height_m);
+    outcome.text += fmt::format("\nbody:    {}/{}, {:.3f} m tall", folder.string(), kFittedBodyFile,
+                                finished.writer.body().height_m);
   }
   return outcome;
 }
 
-Result<void> write_track_report(const TrackTold& told, const std::filesystem::path& folder) {
-  const std::vector<PinholeCamera>& cameras = told.writer.cameras();
+Result<void> write_track_report(const FinishedTrack& finished, const std::filesystem::path& folder) {
+  const std::vector<PinholeCamera>& cameras = finished.writer.cameras();
   ReportInput report;
-  for (const std::string& video : told.options.input.videos) {
+  for (const std::string& video : finished.options.input.videos) {
     const std::string name = std::filesystem::path(video).filename().string();
     report.title += (report.title.empty() ? "" : ", ") + (name.empty() ? video : name);
   }
-  report.recording = &told.tracked.recording;
-  report.body = &told.writer.body();
+  report.recording = &finished.tracked.recording;
+  report.body = &finished.writer.body();
   report.viewpoint = cameras[0].centre_in_world();
   // Not there where drawing it was interrupted before its first picture.
   if (std::filesystem::exists(folder / "overlay.mp4")) report.overlay_video = folder / "overlay.mp4";
-  report.fps = told.source.video().fps();
-  report.stages_s = told.tracked.seconds.list();
-  report.warnings = told.warnings;
-  report.facts = run_lines(told);
-  report.mask_facts = mask_lines(told.options.input, told.source);
+  report.fps = finished.source.video().fps();
+  report.stages_s = finished.tracked.seconds.list();
+  report.warnings = finished.warnings;
+  report.facts = run_lines(finished);
+  report.mask_facts = mask_lines(finished.options.input, finished.source);
   for (size_t c = 0; c < cameras.size(); ++c) {
-    report.strips.emplace_back(cameras[c].name, told.writer.strips()[c].examples());
+    report.strips.emplace_back(cameras[c].name, finished.writer.strips()[c].examples());
   }
   for (const auto& [file, text] : kDownloads) {
     if (std::filesystem::exists(folder / file)) report.downloads.emplace_back(file, text);

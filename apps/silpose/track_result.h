@@ -1,4 +1,4 @@
-// What a track's directory says of the run: the facts of run.json, the lines on the terminal, and report.html.
+// What a track's directory records about the run: the facts of run.json, the lines on the terminal, and report.html.
 // Threads: the main thread only.
 #pragma once
 
@@ -11,8 +11,8 @@
 
 namespace silpose::app {
 
-// What is told of.
-struct TrackTold {
+// What the outcome and the report are made of.
+struct FinishedTrack {
   const TrackOptions& options;
   const CommonOptions& common;
   const CameraChoice& camera;
@@ -23,9 +23,9 @@ struct TrackTold {
 };
 
 // `folder`: where the files will be when the command ends.
-Outcome track_outcome(const TrackTold& told, const std::filesystem::path& folder);
+Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path& folder);
 
 // report.html in `folder`, with the overlay.mp4 that is there. Errors: those of write_report().
-Result<void> write_track_report(const TrackTold& told, const std::filesystem::path& folder);
+Result<void> write_track_report(const FinishedTrack& finished, const std::filesystem::path& folder);
 
 }  // namespace silpose::app

@@ -20,7 +20,7 @@
 
 namespace silpose::app {
 
-// Where a run leaves what another one goes on from, and what an earlier one left.
+// Where a run saves its state for a later run to resume, and what an earlier one saved.
 struct TrackResume {
   std::filesystem::path folder;
   OptionLines made_with;
@@ -29,7 +29,7 @@ struct TrackResume {
 
 struct Tracked {
   TrackRecording recording;         // without steps where smoothing was interrupted
-  TrackerOptions used;              // everything filled in
+  TrackerOptions used;              // resolved
   int64_t num_frames = 0;           // segmented
   std::optional<BodyFit> body_fit;  // where the body was fitted
   StageSeconds seconds;
@@ -39,7 +39,7 @@ struct Tracked {
   std::vector<std::string> doubtful;  // angles, and when
 };
 
-// `tracker`: tracker_options(). What is done goes to a checkpoint every few seconds, and when interrupted. Errors:
+// `tracker`: tracker_options(). Progress is saved to a checkpoint every few seconds, and when interrupted. Errors:
 // those of the video, the segmenter and the files; no frame between --start and --end; interrupted before the first
 // frame; an earlier run of another clip.
 Result<Tracked> track_video(const TrackOptions& options, TrackerOptions tracker, ObservationSource& source,

@@ -1,5 +1,5 @@
-// TrackWriter: the files of a track's result directory. Masks are written as frames come; everything else is made of
-// the recording, also of one that was interrupted.
+// TrackWriter: the files of a track's result directory. Masks are written as frames arrive; everything else is made
+// from the recording, even if it was interrupted.
 // Threads: the main thread only.
 #pragma once
 
@@ -24,10 +24,10 @@ namespace silpose::app {
 
 // The body whose bones were fitted to a clip, in its result directory.
 inline constexpr const char* kFittedBodyFile = "fitted.body";
-// How sure each pixel of a mask is, while a clip that is tracked as a whole is not done.
+// How certain each pixel of a mask is, while a clip that is tracked as a whole is not done.
 inline constexpr std::string_view kConfidenceFolder = "confidence";
 
-// What an observation says beside its mask and confidence.
+// What an observation holds in addition to its mask and confidence.
 struct BesideMask {
   Trust trust;
   std::vector<SeenLandmark> landmarks;
@@ -40,7 +40,7 @@ class TrackWriter {
  public:
   TrackWriter(std::filesystem::path directory, std::shared_ptr<const BodyModel> body,
               std::vector<PinholeCamera> cameras, double fps,
-              bool draws_floor);  // fps: of files that want an even rate
+              bool draws_floor);  // fps: of files that need a constant rate
 
   // One frame of masks/ (masks_NAME/ with several cameras), and of the examples that strips() has. Shapes: one
   // observation a camera.
@@ -48,12 +48,13 @@ class TrackWriter {
 
   // From now on add_masks() keeps the confidence of the masks, too, for read_masks().
   void keep_confidence() { keeps_confidence_ = true; }
-  // What add_masks() wrote of a frame, also of an earlier program. Shapes: the rest of each camera's observation.
+  // What add_masks() wrote of a frame, in this process or an earlier one. Shapes: the rest of each camera's
+  // observation.
   // Errors: a picture that cannot be read or has another size.
   Result<std::vector<Observation>> read_masks(int64_t frame_idx, std::span<const BesideMask> beside) const;
 
   // The next picture of overlay.mp4, of the first camera at its time, with `pose` [D] drawn on it; empty:
-  // nothing is. The floor round the subject, and its footprints, are drawn too where the writer was asked to.
+  // nothing is. The floor around the subject, and its footprints, are drawn too where that was requested.
   Result<void> add_picture(ByteImage picture, int64_t time_ns, std::span<const double> pose);
 
   // What is written is of this body from now on; finish() writes it, too, as kFittedBodyFile.

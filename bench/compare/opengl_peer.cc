@@ -60,8 +60,8 @@ class OpenGlPeer : public Peer {
 }  // namespace
 
 std::unique_ptr<Peer> make_opengl_peer(const SilhouetteScene& scene) {
-  // The driver frees and takes anew what it draws from, batch by batch. Given back to the system each time, a third of
-  // its time goes into page faults.
+  // The driver frees and reallocates its buffers batch by batch. If they were returned to the system each time, a third
+  // of its time would go into page faults.
   mallopt(M_MMAP_THRESHOLD, 1 << 25);  // bytes; the largest that is taken
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
   return fastest_of(

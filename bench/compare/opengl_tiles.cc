@@ -79,7 +79,7 @@ OpenGlTiles::OpenGlTiles(const SilhouetteScene& scene, const OpenGlSetup& setup,
 OpenGlTiles::~OpenGlTiles() {
   eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
-  eglTerminate(display_);  // the next one's driver starts anew, with as many threads as it wants
+  eglTerminate(display_);  // the next one's driver starts from scratch, with its own number of threads
 }
 
 void OpenGlTiles::make_current(bool current) {

@@ -1,5 +1,5 @@
-// Peer: a pipeline that others wrote and keep well, doing the same work as our batch renderer, as well as we can make
-// it. Threads: one at a time; works on both cores itself.
+// Peer: a well-maintained third-party pipeline that does the same work as our batch renderer, as well as we can set it
+// up. Threads: one at a time; works on both cores itself.
 #pragma once
 
 #include <algorithm>

@@ -33,7 +33,7 @@ cmp -s even/poses.csv turned/poses.csv || fail "a turned clip has other poses"
 "$silpose" track truth/video.mp4 --camera truth/camera.toml --background turned.mp4 --particles 10 --layers 1 --end 0.6 \
   --out plate --quiet || fail "a turned plate is refused"
 
-# Something larger beside the subject takes the mask, unless the tracker has told where he is expected.
+# Something larger next to the subject takes the mask, unless the tracker has predicted where the subject is.
 "$clip_tool" boxed truth/video.mp4 boxed.mp4
 "$silpose" "${segment[@]}" boxed.mp4 --out masks_boxed >boxed.json
 expect_at_least "$(number boxed.json mean_area_px)" "$(awk "BEGIN { print 1.2 * $area }")" "boxed: area without a tracker, px"
@@ -41,7 +41,7 @@ expect_at_least "$(number boxed.json mean_area_px)" "$(awk "BEGIN { print 1.2 * 
 "$silpose" evaluate --result boxed --truth truth --json --quiet >errors.json
 expect_at_least "$(number errors.json mask_iou mean)" 0.9 "boxed: masks that the tracker was shown, IoU"
 
-# Who is never whole in the picture is told of.
+# A subject who is never whole in the picture is reported.
 "$silpose" synth --out small --motion static --frames 3 --size 160x120 --quiet
 "$silpose" segment small/masks --segmenter masks --grow 64 --out masks_cut --json --quiet >cut.json 2>/dev/null ||
   fail "a subject at the edge: exit $?"

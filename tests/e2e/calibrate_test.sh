@@ -1,4 +1,4 @@
-# Two cameras film a board; what calibrate makes of the films is held against the cameras that filmed.
+# Two cameras film a board; the result of calibrate is compared with the cameras that filmed.
 source "$(dirname "$0")/checks.sh"
 
 "$3" .
@@ -61,7 +61,7 @@ cmp -s one1.toml one2.toml || fail "another number of threads makes another cali
 grep -q 'webcam.*level' err.txt || fail "no warning that the floor is a guess"
 grep -q '"floor": "assumed"' one.json || fail "not said that the floor is assumed"
 
-# What is wrong is named, and an earlier file is left alone.
+# Errors are named, and an earlier file is left unchanged.
 cp rig.toml before.toml
 expect_failure 2 'square' calibrate left.mp4 --out rig.toml
 expect_failure 2 'board.*eight' calibrate left.mp4 --out rig.toml --square 60 --board eight

@@ -11,7 +11,7 @@ expect_at_least "$(number estimated.json camera_estimate height_m mean)" "$(awk 
 expect_at_most "$(number estimated.json camera_estimate height_m mean)" "$(awk "BEGIN { print $truth_m + 0.15 }")" "height, m"
 expect_at_most "$(number estimated.json camera_estimate tilt_deg mean)" 3 "tilt, degrees"
 expect_at_least "$(number estimated.json camera_estimate tilt_deg mean)" -3 "tilt, degrees"
-expect_at_least "$(number estimated.json camera_estimate focal_px std)" 50 "deviation of a focal length that nothing tells"
+expect_at_least "$(number estimated.json camera_estimate focal_px std)" 50 "deviation of a focal length that nothing determines"
 [[ $(number estimated.json focal_prior mean) == 480.0 ]] || fail "another prior than 0.75 of 640 px"
 # 90 degrees over 640 px; kept as it is.
 "$silpose" "${track[@]}" --fov-deg 90 --out given >given.json 2>warnings.txt || fail "--fov-deg: exit $?"

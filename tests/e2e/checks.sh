@@ -1,4 +1,4 @@
-# Sourced by the end-to-end tests: PROGRAM FOLDER on the command line; makes FOLDER anew and goes there.
+# Sourced by the end-to-end tests: PROGRAM FOLDER on the command line; creates FOLDER afresh and changes to it.
 set -euo pipefail
 silpose=$1
 rm -rf "$2"

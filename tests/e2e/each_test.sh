@@ -1,4 +1,4 @@
-# A folder of clips in one command: one result each, failures listed in the end, the rest done; go on later.
+# A folder of clips in one command: one result each, failures listed at the end, the rest done; resumed later.
 source "$(dirname "$0")/checks.sh"
 
 for seed in 1 2; do
@@ -11,7 +11,7 @@ each=(track --each --segmenter masks --camera truth1/camera.toml --vertices 600 
 found=0
 "$silpose" "${each[@]}" clip1 broken.mp4 clip2 --quiet --json >out.json 2>err.txt || found=$?
 [[ $found == 1 ]] || fail "a broken clip among others: exit $found"
-[[ $(grep -c broken.mp4 err.txt) == 1 ]] || fail "the broken clip is not told once: $(cat err.txt)"
+[[ $(grep -c broken.mp4 err.txt) == 1 ]] || fail "the broken clip is not reported once: $(cat err.txt)"
 for clip in clip1 clip2; do
   [[ -s all/$clip/poses.csv && -s all/$clip/run.json ]] || fail "no result of $clip"
   grep -q -x "video = '$clip'" all/$clip/config.toml || fail "config.toml of $clip names another video"

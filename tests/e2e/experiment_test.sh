@@ -3,10 +3,10 @@ source "$(dirname "$0")/checks.sh"
 
 "$silpose" experiment --list >list.txt
 for name in human-synthetic human-motion human-start human-robust human-faults human-cameras human-cost real; do
-  grep -q "^$name " list.txt || fail "--list does not tell $name: $(cat list.txt)"
+  grep -q "^$name " list.txt || fail "--list does not show $name: $(cat list.txt)"
 done
 
-# A description of one's own: small enough to be done in a moment.
+# A user's description: small enough to be done in a moment.
 cat >sweeps.toml <<'TOML'
 title = "Two elbows"
 seeds = 2
@@ -100,7 +100,7 @@ expect_failure 1 'nowhere/.*: no such file' experiment human-motion --out x --da
 expect_failure 2 'NAME is missing' experiment --out x
 expect_failure 2 '--out is missing' experiment human-start
 mkdir mine && echo hello >mine/letter.txt
-expect_failure 1 'mine: holds something else .*letter.txt' experiment sweeps.toml --out mine
+expect_failure 1 'mine: holds something other .*letter.txt' experiment sweeps.toml --out mine
 sed 's/^frames = 40/frames = -1/' sweeps.toml >broken.toml
 expect_failure 1 'broken.toml: run.frames: ' experiment broken.toml --out x
 finish

@@ -23,7 +23,7 @@ for file in markers.trc motion.mot motion.glb motion.bvh; do
 done
 [[ $(number errors.json frames) -ge 4 ]] || fail "evaluate finds no frames in the partial result"
 
-# The same command again starts anew and replaces both.
+# The same command again starts from scratch and replaces both.
 "$silpose" track truth/masks --segmenter masks --camera truth/camera.toml --init truth/poses.csv --particles 20 --layers 1 \
   --end 0.2 --out earlier --quiet
 [[ ! -e earlier.partial ]] || fail "earlier.partial is left behind"

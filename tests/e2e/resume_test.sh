@@ -1,5 +1,5 @@
-# --resume: what an interrupted or killed track left is gone on from, to the same bytes as if it had never been stopped;
-# what cannot be gone on from is told in one line, and nothing of it is lost.
+# --resume: an interrupted or killed track is resumed, to the same bytes as if it had never been stopped; what cannot be
+# resumed is reported in one line, and nothing of it is lost.
 source "$(dirname "$0")/checks.sh"
 
 "$silpose" synth --out truth --colour --motion sway --frames 24 --lead-in 6 --size 160x120 --seed 3 --quiet
@@ -19,7 +19,7 @@ stop() {
   kill -"$signal" $process || fail "$name: it was done before it could be stopped"
   wait $process 2>/dev/null || status=$?
   [[ $signal == KILL || $status == 130 ]] || fail "$name: exit $status, not 130: $(cat err.txt)"
-  [[ ! -e $name && -s $name.partial/checkpoint.bin ]] || fail "$name: nothing to go on from: $(ls "$name"*)"
+  [[ ! -e $name && -s $name.partial/checkpoint.bin ]] || fail "$name: nothing to resume from: $(ls "$name"*)"
 }
 
 # same WHOLE NAME FILE...
@@ -52,7 +52,7 @@ done
 kill -INT $process
 wait $process && fail "--each: was not stopped"
 "$silpose" track --each "${online[@]}" --resume --out all >/dev/null 2>err.txt || fail "--each --resume: exit $?"
-grep -q 'all/video.partial: .* frames are done' err.txt || fail "--each does not go on within a clip: $(cat err.txt)"
+grep -q 'all/video.partial: .* frames are done' err.txt || fail "--each does not resume within a clip: $(cat err.txt)"
 same whole all/video "${tables[@]}"
 
 # A clip that is tracked as a whole, killed in its passes; the body fitted to it, stopped.
@@ -63,7 +63,7 @@ cp -r killed.partial kept.partial
 "$silpose" track "${whole[@]}" --resume --out killed --quiet || fail "--resume of what was killed: exit $?"
 same smooth killed "${tables[@]}" overlay.mp4
 "$silpose" track "${online[@]}" --resume --out fresh 2>err.txt >/dev/null || fail "--resume without anything: exit $?"
-grep -q 'fresh.partial: nothing to go on from' err.txt || fail "does not say that it begins anew: $(cat err.txt)"
+grep -q 'fresh.partial: nothing to resume from' err.txt || fail "does not say that it starts from the beginning: $(cat err.txt)"
 same whole fresh poses.csv
 
 "$silpose" synth --out pair --model human:height=1.75 --motion sway --frames 6 --size 160x120 --view 30 --view 120 --seed 3 --quiet
@@ -101,14 +101,14 @@ stop INT sampled_again masks/000015.png "${sampling[@]}"
 "$silpose" track "${sampling[@]}" --resume --out sampled_again --quiet || fail "--resume of a sampling filter: exit $?"
 same sampled sampled_again "${tables[@]}" masks/000029.png
 
-# What cannot be gone on from.
+# What cannot be resumed.
 find kept.partial -type f -exec sha256sum {} + | sort >before.txt
 refused() {
   expect_failure "$@" --resume --out kept
   find kept.partial -type f -exec sha256sum {} + | sort >after.txt
   cmp -s before.txt after.txt || fail "${*:2:1}: what was done was touched"
 }
-refused 1 'kept.partial goes on only as it began; --hypotheses: was 2, now 3' track "${whole[@]/#2/3}"
+refused 1 'kept.partial can only be resumed as it was started; --hypotheses: was 2, now 3' track "${whole[@]/#2/3}"
 refused 1 '--seed: was 1, now 7' track "${whole[@]}" --seed 7
 refused 1 '--region: was not given, now' track "${whole[@]}" --region 0,0,160,120
 cp truth/video.mp4 other.mp4

@@ -64,7 +64,7 @@ grep -q '"background": "learned"' learned.json || fail "the person is not cut ou
 "$silpose" segment colour/video.mp4 --out learned --threads 1 --quiet && "$silpose" segment colour/video.mp4 --out again --quiet
 cmp -s learned/masks/000019.png again/masks/000019.png || fail "another number of threads makes another mask"
 
-# Masks keep the numbers of their names, beside the video and by themselves.
+# Masks keep the numbers of their names, with the video and by themselves.
 for input in 'colour/video.mp4 --masks masks/masks' 'masks/masks --segmenter masks'; do
   "$silpose" segment $input --out given --quiet --json >given.json || fail "segment $input: exit $?"
   [[ $(number given.json frames) == 10 ]] || fail "segment $input: not ten frames"
@@ -73,7 +73,7 @@ done
 "$silpose" evaluate --result seen --truth colour --json --quiet >seen_errors.json
 expect_at_least "$(number seen_errors.json mask_iou mean)" 0.65 "segmented masks"
 
-# Nobody there: a result that says so.
+# No person: a result that says so.
 "$silpose" track colour/video.mp4 --background lead-in:0.33 --region 0,0,8,8 --out nobody --quiet --json >nobody.json
 [[ $(number nobody.json frames_tracked) == 0 ]] || fail "somebody was tracked where nobody is"
 grep -q -i 'no person' nobody.json || fail "no warning that nobody was seen"

@@ -20,7 +20,7 @@ Floors parse_floors(std::string_view text);
 // tests also `synth`. sadb sees only base, geometry and image of silpose; below `recording`, silpose does not see sadb.
 std::vector<std::string> include_violations(const std::filesystem::path& root, const Floors& floors);
 
-// Folders whose name hides what is in them, anywhere under ROOT/{src,apps,bench,examples,tests}.
+// Folders with names that do not say what is in them, anywhere under ROOT/{src,apps,bench,examples,tests}.
 std::vector<std::string> folder_violations(const std::filesystem::path& root);
 
 // Keys of sources cited in comments ("deutscher2005", or any word in a list after "references.bib:") under

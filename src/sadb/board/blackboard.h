@@ -2,13 +2,13 @@
 //
 // Contract, for every implementation:
 // - A path is segments joined by '/', such as "tracker/pose": segments are not empty, hold no control characters, and
-//   nothing stands before the first or after the last.
+//   nothing precedes the first or follows the last.
 // - The type of a path is that of its first entry; an entry of another type is refused.
 // - Entries may come in any order of time. One with the time of an entry that is there takes its place.
 // - What put() has taken is seen by every get(), range(), list() and count() that starts after it returned.
 // - Any number of threads may call anything at once. A writer does not wait while readers copy values out; a range()
-//   beside writers gives each entry as it was at some instant during the call.
-// - Values are copied in and out: nothing given back changes later.
+//   during writes returns each entry as it was at some instant during the call.
+// - Values are copied in and out: nothing that was returned changes later.
 //
 // Based on: thesis section 3.3 (references.bib: cormier2019).
 #pragma once

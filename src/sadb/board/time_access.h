@@ -1,5 +1,5 @@
-// Time access: what a path's entries say about an instant, by the method that the reader chooses. Every store finds the
-// neighbours of the instant in its own way; what is made of them is decided here.
+// Time access: the value of a path at an instant, by the method that the reader chooses. Every store finds the
+// neighbours of the instant in its own way; the value is computed from them here.
 // Threads: functions without state.
 #pragma once
 
@@ -21,7 +21,7 @@ enum class Method {
              // very instant serves every type. Angles of a pose are taken as numbers: they do not go around.
 };
 
-// How a reading came about.
+// How a reading was obtained.
 enum class How { kRecorded, kInterpolated, kHeld };
 
 struct Reading {

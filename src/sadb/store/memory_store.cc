@@ -109,7 +109,7 @@ Result<void> MemoryStore::put(const std::string& path, int64_t time_ns, Value va
   std::shared_ptr<Series> series = impl_->find(path);
   if (!series) {
     if (Result<void> valid = check_path(path); !valid) return valid.failure();
-    // The first entry comes with the series: nobody sees a path without entries.
+    // The first entry comes with the series: no reader sees a path without entries.
     auto fresh = std::make_shared<Series>(type);
     fresh->put(entry);
     const std::lock_guard lock(impl_->mutex);

@@ -1,4 +1,4 @@
-// MemoryStore: a blackboard in this process's memory, gone with it.
+// MemoryStore: a blackboard in this process's memory, lost when it ends.
 // Locks are held to find or place an entry, never while a value is copied; a value is shared once it is placed.
 // Threads: as Blackboard.
 #pragma once

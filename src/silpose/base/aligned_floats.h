@@ -1,4 +1,4 @@
-// AlignedFloats: an array of numbers that begins where vector registers like it, every row of kLanes numbers too.
+// AlignedFloats: an array of numbers, aligned for vector registers, as is every row of kLanes numbers.
 // Threads: a value.
 #pragma once
 

@@ -1,5 +1,5 @@
-// Files of bytes that tell whether they are whole: a header with magic (8 bytes), version (uint32), CRC-32 of the
-// payload (uint32) and its size (uint64), then the payload. Little-endian. Written as write_text_file() does.
+// Binary files whose integrity can be checked: a header with magic (8 bytes), version (uint32), CRC-32 of the payload
+// (uint32) and its size (uint64), then the payload. Little-endian. Written as write_text_file() does.
 // Threads: functions without state.
 #pragma once
 

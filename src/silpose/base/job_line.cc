@@ -51,7 +51,7 @@ void JobLine::work() {
   }
 }
 
-Result<void> JobLine::tell() {
+Result<void> JobLine::take_error() {
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
   if (failure_) return *std::exchange(failure_, std::nullopt);
   return {};
@@ -60,7 +60,7 @@ Result<void> JobLine::tell() {
 Result<void> JobLine::give(Job job) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return waiting_.size() < most_waiting_ || has_failed_; });
-  if (Result<void> told = tell(); !told) return told;
+  if (Result<void> earlier = take_error(); !earlier) return earlier;
   waiting_.push_back(std::move(job));
   lock.unlock();
   changed_.notify_all();
@@ -70,7 +70,7 @@ Result<void> JobLine::give(Job job) {
 Result<void> JobLine::finish() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return (waiting_.empty() && !is_busy_) || has_failed_; });
-  return tell();
+  return take_error();
 }
 
 double JobLine::take_seconds() {

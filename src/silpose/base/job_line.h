@@ -1,5 +1,5 @@
-// JobLine: a thread that does one job after another while the thread that gives them goes on, such as writing a frame's
-// files while the next frame is computed. Jobs are done in the order they were given.
+// JobLine: a thread that does one job after another while the thread that submits them continues, such as writing a
+// frame's files while the next frame is computed. Jobs are done in the order they were given.
 // Threads: one thread gives jobs; what a job uses must not be used elsewhere until finish().
 #pragma once
 
@@ -20,24 +20,24 @@ class JobLine {
  public:
   using Job = std::function<Result<void>()>;
 
-  // `most_waiting`: given and not begun, before give() waits: it bounds the memory that they hold.
+  // `most_waiting`: jobs submitted and not begun, before give() blocks: it bounds the memory that they hold.
   explicit JobLine(size_t most_waiting = 4);
   JobLine(const JobLine&) = delete;
   JobLine& operator=(const JobLine&) = delete;
-  ~JobLine();  // does what was given
+  ~JobLine();  // completes the jobs that were submitted
 
-  // Errors: what an earlier job failed with, told once; none is done after it. What a job throws is thrown here.
+  // Errors: what an earlier job failed with, reported once; no job is run after it. What a job throws is thrown here.
   Result<void> give(Job job);
 
   // Waits until all jobs are done. Errors: as give().
   Result<void> finish();
 
-  // How long jobs took since this was asked last. REQUIRES: finish() was called.
+  // How long jobs took since the last call of this. REQUIRES: finish() was called.
   double take_seconds();
 
  private:
   void work();
-  Result<void> tell();
+  Result<void> take_error();
 
   const size_t most_waiting_;
   std::mutex mutex_;

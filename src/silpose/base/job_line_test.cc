@@ -46,13 +46,13 @@ TEST(JobLine, GivingWaitsWhereTooManyWait) {
   EXPECT_EQ(line.take_seconds(), 0);
 }
 
-TEST(JobLine, TellsAFailureOnceAndDoesNothingAfterIt) {
+TEST(JobLine, ReportsAFailureOnceAndDoesNothingAfterIt) {
   JobLine line;
   int num_done = 0;
   ASSERT_TRUE(line.give([]() -> Result<void> { return error("disk: full"); }));
-  const Result<void> told = line.finish();
-  ASSERT_FALSE(told);
-  EXPECT_EQ(told.error().message, "disk: full");
+  const Result<void> finished = line.finish();
+  ASSERT_FALSE(finished);
+  EXPECT_EQ(finished.error().message, "disk: full");
   EXPECT_TRUE(line.give([&]() -> Result<void> {
     ++num_done;
     return {};
@@ -63,11 +63,11 @@ TEST(JobLine, TellsAFailureOnceAndDoesNothingAfterIt) {
 
 TEST(JobLine, AFailureEndsTheWaitingOfWhoGivesMore) {
   JobLine line(1);
-  Result<void> told;
-  for (int i = 0; i < 100 && told.ok(); ++i) {
-    told = line.give([]() -> Result<void> { return error("no"); });
+  Result<void> given;
+  for (int i = 0; i < 100 && given.ok(); ++i) {
+    given = line.give([]() -> Result<void> { return error("no"); });
   }
-  EXPECT_FALSE(told);
+  EXPECT_FALSE(given);
 }
 
 TEST(JobLine, ThrowsWhatAJobThrew) {

@@ -1,4 +1,4 @@
-// descend(): damped Gauss-Newton round any problem that linearises itself: a step that lowers the cost is kept and the
+// descend(): damped Gauss-Newton for any problem that linearises itself: a step that lowers the cost is kept and the
 // next one damped less; one that does not is tried again, shorter.
 // Based on: the damping of Levenberg and Marquardt (references.bib: nocedal2006).
 // Threads: a function without state.
@@ -16,7 +16,7 @@ struct SmallestGain {
   double relative = 0;  // to the cost
 };
 
-// At most `max_iterations` steps from `at`, which has a cost(). `step(at, damping)` gives the point after a step from
+// At most `max_iterations` steps from `at`, which has a cost(). `step(at, damping)` returns the point after a step from
 // `at` whose normal matrix has its diagonal multiplied by 1 + damping, as std::optional: nothing ends the descent.
 template <class Point, class Step>
 void descend(Point& at, int max_iterations, const SmallestGain& smallest, const Step& step) {

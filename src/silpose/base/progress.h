@@ -1,4 +1,4 @@
-// ProgressSink: how long work tells how far it is, and learns that it should stop. Libraries never print.
+// ProgressSink: how long-running work reports its progress, and learns that it should stop. Libraries never print.
 // Threads: update() is called by one thread at a time.
 #pragma once
 

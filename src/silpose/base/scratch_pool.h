@@ -1,5 +1,5 @@
-// ScratchPool: keeps what threads work in from one piece of work to the next, so that nothing is allocated once every
-// thread has had its own. Threads: any may take and give back.
+// ScratchPool: keeps the threads' working memory from one piece of work to the next, so that nothing is allocated once
+// every thread has had its own. Threads: any thread may take and return scratch.
 #pragma once
 
 #include <memory>

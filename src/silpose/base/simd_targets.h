@@ -1,12 +1,12 @@
 // For tests: the same code under every instruction set that it was built for and that this processor has.
-// Threads: none other may draw meanwhile.
+// Threads: no other thread may draw meanwhile.
 #pragma once
 
 #include <hwy/highway.h>
 
 namespace silpose {
 
-// Calls visit(name) once an instruction set, which is used meanwhile; the processor's best is used again afterwards.
+// Calls visit(name) once per instruction set, which is used meanwhile; the processor's best is used again afterwards.
 template <class Visit>
 void for_each_simd_target(Visit&& visit) {
   struct BestAgain {

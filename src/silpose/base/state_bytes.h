@@ -1,4 +1,4 @@
-// to_bytes(), from_bytes(): the state of running work as bytes, for the same program to take up later. Numbers, enums,
+// to_bytes(), from_bytes(): the state of running work as bytes, for the same program to resume later. Numbers, enums,
 // strings, lists, optionals, pairs, Eigen's matrices, and whatever lists its members:
 //   struct State { int step = 0; std::vector<double> pose; static auto members(auto& s) { return std::tie(s.step,
 //   s.pose); } }; const std::string bytes = to_bytes(state, weight);

@@ -1,4 +1,5 @@
-// Whole text files: read at once, and written beside their final name, then renamed, so that a reader never sees half.
+// Whole text files: read at once; written under a temporary name next to the final one, then renamed, so that a reader
+// never sees half a file.
 // Threads: functions without state; two writers of one path are the caller's business.
 #pragma once
 

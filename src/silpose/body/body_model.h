@@ -64,7 +64,7 @@ void skin_vertices(const BodyModel& body, std::span<const double> pose, std::spa
 [[nodiscard]] std::vector<std::string> landmark_names(const BodyModel& body);
 [[nodiscard]] std::vector<Eigen::Vector3d> landmark_positions(const BodyModel& body, std::span<const double> pose);
 
-// How far the joint or end point that is furthest off is off, metres. Shapes: landmarks [J + E] of two poses.
+// The largest distance between corresponding joints or end points, metres. Shapes: landmarks [J + E] of two poses.
 [[nodiscard]] double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b);
 
 // The zero pose with the lowest vertex on the floor y = 0 and the root above the origin, for skeletons whose root has a

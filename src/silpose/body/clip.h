@@ -1,5 +1,6 @@
-// Clip: recorded motion of any skeleton, as a motion-capture file holds it: joints, their rest offsets, and for each frame
-// where each joint is in its parent. Lengths are in the file's own unit, which BVH does not tell; retargeting finds the scale.
+// Clip: recorded motion of any skeleton, as a motion-capture file holds it: joints, their rest offsets, and for each
+// frame where each joint is in its parent. Lengths are in the file's own unit, which BVH does not specify; retargeting
+// finds the scale.
 // Threads: a value; const functions are safe.
 #pragma once
 

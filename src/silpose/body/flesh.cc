@@ -11,7 +11,7 @@
 namespace silpose {
 namespace {
 
-constexpr size_t kMostTouched = 150;  // vertices of a bone that a ball is sought for
+constexpr size_t kMostTouched = 150;  // vertices of a bone for which a ball is computed
 constexpr size_t kMostSpheres = 6;    // of a bone
 constexpr double kSmallest = 0.5;     // of a bone's largest sphere
 constexpr double kApart = 0.7;        // of a radius: sphere centres of one bone are further apart

@@ -1,5 +1,5 @@
-// Flesh: which room a body takes, coarsely, for any skeleton: spheres inside its skin, each fixed to a bone, and the
-// points of every bone that reach furthest out. A vertex is of its main joint's bone.
+// Flesh: the volume that a body occupies, coarsely, for any skeleton: spheres inside its skin, each fixed to a bone,
+// and the points of every bone that reach furthest out. A vertex is of its main joint's bone.
 // Source: largest empty balls that touch the skin (references.bib: ma2012).
 // Threads: functions without state; uses all cores and gives the same result on any number.
 #pragma once

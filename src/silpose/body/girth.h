@@ -19,7 +19,7 @@ class Girths {
   // [G] the groups of bones that have flesh, in joint order, named without their side.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
 
-  // Prior covariance [G, G]: of the whole body's girth, and of each group's beside it.
+  // Prior covariance [G, G]: of the whole body's girth, and of each group's deviation from it.
   [[nodiscard]] Eigen::MatrixXd covariance() const;
 
   // The body whose flesh reaches further from each bone's middle line by `girths` [G], shares: 0.1 is a tenth thicker.

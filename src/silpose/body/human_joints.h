@@ -4,8 +4,8 @@
 // epicondyles and of the malleoli (wu2002); elbow, wrist: midpoints of the humeral epicondyles and of the styloids
 // (wu2005); shoulder: below the acromion (rab2002, deleva1996b). Trunk, clavicle: the MakeHuman rig's (makehuman).
 // Landmarks are means of a few skin vertices. Around a limb the skin is about equally thick on both sides, so that it
-// does not move midpoints. At the pelvis it is not: it is 10 mm thick over the front spines and 20 mm over the back
-// ones (mantovani2016), so that hips are 3 mm too far forward, uncorrected.
+// does not move midpoints. At the pelvis it is not: it is 10 mm thick over the anterior spines and 20 mm over the
+// posterior ones (mantovani2016), so that hips are 3 mm too far forward, uncorrected.
 // Threads: functions without state.
 #pragma once
 

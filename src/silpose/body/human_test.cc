@@ -249,7 +249,7 @@ TEST(LevelOfDetail, IsTheBodysOwnWhereItHasIt) {
   EXPECT_EQ(coarsest_level(body, 0.94), &body.levels[0]);
   EXPECT_EQ(coarsest_level(body, 0.96), &body.levels[1]);
   EXPECT_EQ(coarsest_level(body, 0.98), nullptr);
-  body.levels[0].faces.resize(100);  // taken as it is, not made anew
+  body.levels[0].faces.resize(100);  // used as it is, not rebuilt
   EXPECT_EQ(level_of_detail(body, 600).rest.faces.size(), 100u);
 }
 

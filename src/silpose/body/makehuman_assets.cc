@@ -104,7 +104,7 @@ Result<MakeHumanAssets> load_makehuman_assets(const std::filesystem::path& direc
   MakeHumanAssets assets;
   assets.hash = sha256(list);
   if (assets.hash != kListSha256) {
-    return error("{}: not the expected body data (SHA-256 of its list is {}); scripts/fetch-body-data fetches it anew",
+    return error("{}: not the expected body data (SHA-256 of its list is {}); scripts/fetch-body-data fetches it again",
                  directory.string(), assets.hash);
   }
 

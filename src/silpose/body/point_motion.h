@@ -1,5 +1,5 @@
-// PointMotion: how points that are fixed to joints move with the pose: positions and derivatives by it, of as many
-// points as wanted at the price of one forward kinematics. Threads: a value; const functions are safe.
+// PointMotion: how points that are fixed to joints move with the pose: positions and derivatives by it, of any number
+// of points at the cost of one forward kinematics. Threads: a value; const functions are safe.
 #pragma once
 
 #include <Eigen/Core>

@@ -30,11 +30,11 @@ struct Retargeted {
   bool is_z_up = false;              // the clip's world has z up
 };
 
-// Root translation is kept, scaled by the ratio of leg lengths, and lifted as a whole until the feet stand on y = 0
-// (the 5th percentile over frames of the body's lowest point). The first frame is left out when it is the rest
-// pose itself and the limbs jump by more than 5 degrees to the second: many CMU files open with a T-pose. A twist that
-// limb directions do not show stays near zero. Errors: no frame; a joint that has no match; rest pose of no size; names
-// what is missing.
+// Root translation is kept, scaled by the ratio of leg lengths, and lifted as a whole until the feet are on y = 0 (the
+// 5th percentile over frames of the body's lowest point). The first frame is left out when it is the rest pose
+// itself and the limbs jump by more than 5 degrees to the second: many CMU files open with a T-pose. A twist that limb
+// directions do not show stays near zero. Errors: no frame; a joint that has no match; rest pose of no size; names what
+// is missing.
 Result<Retargeted> retarget(const Clip& clip, const BodyModel& body, const RetargetOptions& options = {});
 
 // The joint of a clip (index into `names`) that plays the part of one of ours: "root", "head", "left_thigh", ...

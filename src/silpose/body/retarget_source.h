@@ -1,5 +1,5 @@
-// What retargeting must know of a recorded clip before it can follow it: which joint is what, how its rest pose stands,
-// which way is up, how a flat foot slopes, which frames to take. Inside of module body only.
+// What retargeting must know about a recorded clip: which joint is what, how its rest pose is oriented, which way is
+// up, how a flat foot slopes, which frames to take. For use inside module body only.
 // Threads: functions without state.
 #pragma once
 
@@ -35,12 +35,13 @@ double distance(std::span<const Rigid3> joints, int a, int b);
 // Columns left, up and forward of the body in the clip's rest pose, in clip coordinates.
 Eigen::Matrix3d rest_axes(std::span<const Rigid3> rest, const Parts& parts);
 
-// Whether z is up in the clip's world: told by the rest pose, unless the motion itself stands up along the other axis.
+// Whether z is up in the clip's world: determined from the rest pose, unless in the motion itself the body is upright
+// along the other axis.
 bool is_z_up(const Clip& clip, const Parts& parts, const Eigen::Vector3d& rest_up);
 
 // How ankle to toe base slopes while the sole is flat, radians: it differs from rig to rig, and captures are rarely
-// calibrated for it. Told by the flattest tenth of the quarter of frames in which the foot moves least, near the slope
-// in the rest pose. `rest_up`, `up`: of the rest pose and of the clip's world.
+// calibrated for it. Estimated from the flattest tenth of the quarter of frames in which the foot moves least, near the
+// slope in the rest pose. `rest_up`, `up`: of the rest pose and of the clip's world.
 double flat_foot_pitch(const Clip& clip, int foot, int toe, const Eigen::Vector3d& rest_up, const Eigen::Vector3d& up);
 
 // Of the joints that are turned in the second frame, three quarters are not in the first.

@@ -18,7 +18,7 @@
 namespace silpose {
 
 // One degree of freedom: a translation along, or a rotation about, `axis`: a unit vector in the joint's own frame,
-// whose axes are the world's in the zero pose. Joint::dof_indices tells the order in which a joint's rotations are
+// whose axes are the world's in the zero pose. Joint::dof_indices gives the order in which a joint's rotations are
 // applied. Translations come before (outside) all rotations of their joint: those of a root without offset are its
 // world position.
 struct Dof {
@@ -91,7 +91,8 @@ class Skeleton {
 };
 
 // Sets the translations of the root so that its joint is at `root_in_world`, in metres; all else in the pose [D] stays.
-// Their axes must be orthogonal. A root with fewer than three comes as near as it can; one without any is not moved.
+// Their axes must be orthogonal. A root with fewer than three is moved as near as possible; one without any is not
+// moved.
 // Errors: throws std::invalid_argument for a pose of another size.
 void place_root(const Skeleton& skeleton, std::span<double> pose, const Eigen::Vector3d& root_in_world);
 

@@ -1,5 +1,5 @@
 // SkinDerivative: how points of a skinned mesh move with the pose: two rows d (P x) / d pose for each of them, P [2, 3]
-// being how its pixel, or whatever else is asked for, moves with x.
+// being the derivative by x of its pixel, or of any other projection that the caller gives.
 // With x = sum_j w_j A_j X (A_j = where the pose puts joint j's part of the rest mesh), dx is the sum over its joints
 // of what a turn or shift of each DOF above the joint does to w_j A_j X. Threads: one thread per object.
 #pragma once
@@ -28,7 +28,7 @@ class SkinDerivative {
   [[nodiscard]] std::span<const Eigen::Vector3f> positions() const { return positions_; }
 
   // Columns of a row come in blocks of AlignedFloats::kLanes, a limb's in one block: where the derivative by each DOF
-  // is [D], how many there are, and, a bit a block, where the rows of each point are not zero [P].
+  // is [D], how many there are, and, one bit per block, where the rows of each point are not zero [P].
   [[nodiscard]] std::span<const uint32_t> columns() const { return columns_; }
   [[nodiscard]] size_t row_stride() const { return stride_; }
   [[nodiscard]] std::span<const int32_t> blocks() const { return point_blocks_; }

@@ -11,7 +11,7 @@
 
 namespace silpose {
 
-// The lengths are called as the bone's outer joint: "right_shin_length". Metres, 0: as built; limits are three
+// The lengths are named after the bone's outer joint: "right_shin_length". Metres, 0: as built; limits are three
 // deviations.
 BodyModel stretchable(const BodyModel& body);
 

@@ -15,13 +15,13 @@ struct Board {
   int columns = 9, rows = 6;  // inner corners, at least 3 each
   double square_m = 0.025;
 
-  // Turned by half a turn, a board with an odd and an even number of corners has its colours exchanged; others look
-  // the same, and two cameras may not agree on which corner is the first.
+  // Rotated by half a turn, a board with an odd and an even number of corners has its colours exchanged; others look
+  // the same, and two cameras may disagree on which corner is the first.
   [[nodiscard]] bool has_one_way_up() const { return (columns + rows) % 2 == 1; }
 };
 
 // The inner corners [N] row by row in the board's own frame, metres: the first at the origin, x along a row, y to the
-// next row, z away from whoever looks at the print.
+// next row, z away from a viewer of the print.
 [[nodiscard]] std::vector<Eigen::Vector3d> board_points(const Board& board);
 
 // Pixels [N] of the inner corners in the order of board_points(); nothing where the whole board is not seen. The square

@@ -1,5 +1,4 @@
-// Pictures of a printed board, ray by ray through a camera with distortion: the truth that calibrations are held
-// against, in tests.
+// Pictures of a printed board, ray by ray through a camera with distortion: the ground truth of calibration tests.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +24,7 @@ class BoardFilm {
     }
   }
 
-  // The board before a grey wall. The square between its first four corners is dark, its margin a square wide.
+  // The board in front of a grey wall. The square between its first four corners is dark, its margin a square wide.
   [[nodiscard]] ByteImage picture(const Board& board, const Rigid3& world_from_board, Rng& rng) const {
     const Rigid3 board_from_cam = (camera_.cam_from_world * world_from_board).inverse();
     ByteImage image(camera_.width, camera_.height, 3);
@@ -44,7 +43,7 @@ class BoardFilm {
   [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
 
  private:
-  static constexpr int kSamples = 4;  // a pixel
+  static constexpr int kSamples = 4;  // per pixel
 
   static double brightness(const Board& board, const Rigid3& board_from_cam, const Eigen::Vector3d& ray) {
     static constexpr double kWall = 120, kPaper = 215, kInk = 35;

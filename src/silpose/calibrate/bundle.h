@@ -1,4 +1,4 @@
-// Bundle adjustment of cameras and the places of a board: all at once, so that their corners come nearest to where they
+// Bundle adjustment of cameras and board poses: all at once, so that the projected corners come nearest to where they
 // were seen.
 // Based on: damped Gauss-Newton on the reduced system of the cameras (references.bib: triggs2000).
 // For use inside module calibrate. Threads: functions without state.

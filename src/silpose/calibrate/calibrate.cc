@@ -27,7 +27,7 @@ double rms_of(const Bundle& bundle, const std::vector<Eigen::Vector3d>& points, 
   return std::sqrt(view_error(bundle, points, view) / static_cast<double>(points.size()));
 }
 
-// Views that are believed, with the places that are left of the bundle. The views of `kept_place` (or none: the number
+// Views that are accepted, with the places that are left of the bundle. The views of `kept_place` (or none: the number
 // of places) all stay.
 Bundle without_outliers(const Bundle& bundle, const std::vector<Eigen::Vector3d>& points, double harmless,
                         size_t kept_place, std::vector<BundleView>& views, std::map<int64_t, size_t>& place_of) {
@@ -124,7 +124,7 @@ void warn_of_camera(const PinholeCamera& camera, const CameraFit& fit, std::vect
   }
   if (fit.focal_sd_px > kVagueFocal * focal) {
     warnings.push_back(
-        fmt::format("{}: the views tell the focal length to {:.1f} % only; tilt the board, this way and "
+        fmt::format("{}: the views determine the focal length to {:.1f} % only; tilt the board, this way and "
                     "that, near and far",
                     camera.name, 100 * fit.focal_sd_px / focal));
   }
@@ -202,7 +202,7 @@ Result<CameraCalibration> calibrate_cameras(const Board& board, const std::vecto
     const PinholeCamera level = default_camera(cameras[0].width, cameras[0].height);
     set_world(level.cam_from_world.inverse() * bundle.cameras[0].cam_from_world, bundle.cameras);
     result.warnings.push_back(fmt::format(
-        "where the floor is was not said: camera {} is taken to be level and 1.5 m above it", cameras[0].name));
+        "the floor was not specified: camera {} is assumed to be level and 1.5 m above it", cameras[0].name));
   }
   result.cameras = std::move(bundle.cameras);
   return result;

@@ -1,5 +1,5 @@
-// Cameras from a printed board that was moved before them: lenses from views that differ, where the cameras stand from
-// the instants in which two of them see the board, and then everything fitted together.
+// Cameras from a printed board that was moved in front of them: lenses from views that differ, camera poses from the
+// instants at which two of them see the board, and then everything fitted together.
 // Based on: plane-based calibration (references.bib: zhang2000) by OpenCV (opencv), then bundle adjustment
 // (triggs2000). Threads: a function without state.
 #pragma once
@@ -28,9 +28,9 @@ struct CameraSightings {
   std::vector<Sighting> sightings;
 };
 
-// How well one camera was told.
+// How well one camera was determined.
 struct CameraFit {
-  int num_views = 0;       // of the board, that the fit rests on
+  int num_views = 0;       // of the board, that the fit used
   double rms_px = 0;       // root mean square distance of a corner from where the fit puts it
   double focal_sd_px = 0;  // standard deviation of the focal length that the camera's own views leave
   double coverage = 0;     // part of the picture (6 x 4 cells) in which there were corners
@@ -46,8 +46,8 @@ struct CameraCalibration {
 // World: where the board lay on the floor at `floor_instant`, the floor is y = 0, the board's middle the origin, and +Z
 // the one of the board's sides that looks most towards the first camera. Without it the first camera is level and
 // 1.5 m above the floor, as default_camera(): a guess, which a warning says.
-// Errors: a camera with fewer than 4 views that differ, or views that tell no lens; one that never sees the board
-// together with the others; nobody saw it at `floor_instant`. Each names the camera.
+// Errors: a camera with fewer than 4 views that differ, or views that do not determine the lens; one that never sees
+// the board together with the others; nobody saw it at `floor_instant`. Each names the camera.
 // REQUIRES: a camera at least; with several a board that has one way up.
 Result<CameraCalibration> calibrate_cameras(const Board& board, const std::vector<CameraSightings>& cameras,
                                             std::optional<int64_t> floor_instant);

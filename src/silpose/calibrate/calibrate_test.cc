@@ -26,7 +26,7 @@ PinholeCamera lens(const Eigen::Vector3d& eye, double focal, const char* name) {
   return camera;
 }
 
-// Where a board is carried round a room, print towards the first camera, somewhere in its picture; instant 0: on the
+// Where a board is carried around a room, print towards the first camera, somewhere in its picture; instant 0: on the
 // floor.
 std::vector<Rigid3> walk(const PinholeCamera& camera, int count, double tilt, Rng& rng) {
   std::vector<Rigid3> places = {board_on_floor(kBoard, 0.1, 0.3)};
@@ -63,7 +63,7 @@ void expect_same_lens(const PinholeCamera& found, const PinholeCamera& truth, do
   EXPECT_NEAR(found.cx, truth.cx, 3);
   EXPECT_NEAR(found.cy, truth.cy, 3);
   // What the coefficients do, not what they are: how they bend what is seen near the picture's rims. (A shift of all of
-  // it is hardly told from a turn of the camera.)
+  // it is hardly distinguishable from a rotation of the camera.)
   std::vector<Eigen::Vector2d> off;
   for (const Eigen::Vector2d& place : {Eigen::Vector2d(0.1, 0.5), {0.9, 0.5}, {0.5, 0.1}, {0.5, 0.9}}) {
     const Eigen::Vector2d pixel(place.x() * truth.width, place.y() * truth.height);

@@ -12,11 +12,11 @@ struct FocalPrior {
   double deviation = 0;  // standard, of the logarithm: about relative; 0: known, and not estimated
 };
 
-// Of a clip that says nothing of its camera: a phone or a webcam. [width, height]: pixels.
+// Of a clip without information about its camera: assumes a phone or a webcam. [width, height]: pixels.
 [[nodiscard]] FocalPrior usual_focal_length(int width, int height);
 
-// The focal length in pixels of a picture of that size with the field of view of a lens of `mm` before film of 36 x 24
-// mm: equal angles over the diagonals.
+// The focal length in pixels of a picture of that size with the field of view of a lens of `mm` on film of 36 x 24 mm:
+// equal angles over the diagonals.
 [[nodiscard]] double focal_px_of_mm35(double mm, int width, int height);
 
 // By the field of view along the picture's larger side, radians below pi.

@@ -42,7 +42,8 @@ Result<LensFit> calibrate_views(const Board& board, const CameraSightings& camer
   cv::Mat matrix, distortion, deviations;
   try {
     std::vector<cv::Mat> rotations, translations;
-    // Four distortion coefficients: a fifth (k3) is told only by pictures that are full of corners to their rims.
+    // Four distortion coefficients: a fifth (k3) is determined only by pictures that are full of corners up to their
+    // edges.
     cv::calibrateCamera(points, pixels, {camera.width, camera.height}, matrix, distortion, rotations, translations,
                         deviations, cv::noArray(), view_rms, cv::CALIB_FIX_K3);
   } catch (const cv::Exception&) {
@@ -60,7 +61,7 @@ Result<LensFit> calibrate_views(const Board& board, const CameraSightings& camer
   lens.cy = matrix.at<double>(1, 2);
   const double longest = 100.0 * std::max(camera.width, camera.height);
   if (!(lens.fx > 1 && lens.fy > 1 && lens.fx < longest && lens.fy < longest && std::isfinite(lens.cx + lens.cy))) {
-    return error("{}: the views of the board do not tell the lens; tilt it this way and that, near and far",
+    return error("{}: the views of the board do not determine the lens; tilt it this way and that, near and far",
                  camera.name);
   }
   std::copy_n(distortion.ptr<double>(), 4, lens.distortion.begin());
@@ -97,8 +98,9 @@ Result<LensFit> fit_lens(const Board& board, const CameraSightings& camera) {
   for (const Sighting& sighting : camera.sightings) features.push_back(view_feature(board, camera.width, sighting));
   std::vector<size_t> views = choose_views(features, kMostViews, kNearestViews);
   const auto too_few = [&](size_t count) {
-    return error("{}: {} views of the board that differ, in {} frames it was found in; {} are the least, 20 are good",
-                 camera.name, count, camera.sightings.size(), kFewestViews);
+    return error(
+        "{}: {} views of the board that differ, in {} frames it was found in; at least {} are needed, 20 are good",
+        camera.name, count, camera.sightings.size(), kFewestViews);
   };
   if (views.size() < kFewestViews) return too_few(views.size());
   std::vector<double> view_rms;

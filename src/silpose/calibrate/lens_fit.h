@@ -12,7 +12,7 @@
 
 namespace silpose {
 
-inline constexpr double kNearestViews = 0.02;  // of the picture's width: views that are nearer tell the same
+inline constexpr double kNearestViews = 0.02;  // of the picture's width: nearer views are redundant
 
 // Views that differ from each other most, as indices in ascending order: at most `most`, no two nearer than `nearest`.
 // `features`: a vector a view; their Euclidean distance is how different two are. The first chosen is the first view.
@@ -24,8 +24,8 @@ inline constexpr double kNearestViews = 0.02;  // of the picture's width: views 
 [[nodiscard]] Eigen::VectorXd view_feature(const Board& board, double picture_width, const Sighting& sighting);
 
 struct LensFit {
-  PinholeCamera camera;       // where it stands is left alone
-  std::vector<size_t> views;  // indices of the sightings it rests on
+  PinholeCamera camera;       // its pose is left unchanged
+  std::vector<size_t> views;  // indices of the sightings that it used
   double focal_sd_px = 0;
 };
 

@@ -26,8 +26,8 @@ using Residual = Eigen::Vector4d;  // feet x, y and head x, y
 
 // Of cameras in use, and of people who walk: mean and deviation [guesses]. The focal length is relative to the caller's
 // prior, whose deviation comes in place of the 1; the height to a metre; reach is how far before the body's axis the
-// nearest foot is, metres; stoop how much lower than its height a body stands, lean how far the head is beside the
-// feet, both in parts of its height.
+// nearest foot is, metres; stoop how much lower than its height a body stands, lean how far the head is off the feet,
+// both in parts of its height.
 const Unknowns kPriorMean = (Unknowns() << 0, 0.03, 0, std::log(1.4), 0.22, 0.02, 0).finished();
 const Unknowns kPriorDeviation = (Unknowns() << 1, 0.18, 0.02, 0.4, 0.12, 0.02, 0.03).finished();
 // Extents are taken as medians over a stride, since feet alternate and heads bob with every step: a window every half

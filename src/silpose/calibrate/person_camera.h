@@ -1,8 +1,8 @@
-// estimate_camera(): focal length, tilt, roll and height of a camera that nobody calibrated, from where the head and
-// the feet of an upright person on the floor are seen, and how tall the person is. A person who comes nearer tells how
-// high the camera stands and where the horizon is; one who is seen leaning at the picture's sides, where the picture
-// is tilted, tells the focal length. What a clip does not tell stays at its prior (of the focal length: the caller's),
-// and its deviation says so.
+// estimate_camera(): focal length, tilt, roll and height of an uncalibrated camera, from where the head and the feet of
+// an upright person on the floor are seen, and how tall the person is. A person who comes nearer determines how high
+// the camera is and where the horizon is; one who is seen leaning at the picture's sides, where the picture is tilted,
+// determines the focal length. What a clip does not determine stays at its prior (of the focal length: the caller's),
+// as its deviation shows.
 // Based on: metrology of a single view (references.bib: criminisi2000), as a maximum a posteriori fit with residuals of
 // Student's t, since people stoop, jump and raise their arms. Threads: functions without state.
 #pragma once
@@ -24,7 +24,7 @@ struct CameraEstimate {
   PinholeCamera camera;  // above the world's origin by the height, the person in the middle of the clip near the origin
   Estimated focal_px, tilt, roll, height_m;  // radians: tilt is positive where it looks down
   double body_height_m = 0;                  // taken as known
-  size_t num_frames = 0;                     // that the estimate rests on
+  size_t num_frames = 0;                     // that the estimate used
 };
 
 inline constexpr size_t kFewestExtents = 8;

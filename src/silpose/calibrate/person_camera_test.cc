@@ -112,7 +112,7 @@ TEST(EstimateCamera, KnownFocalLengthIsKept) {
   EXPECT_LT(known->tilt.deviation, 0.7 * estimate_camera(extents, 640, 480, kBodyHeight, {900, 0.2})->tilt.deviation);
   const auto wrong = estimate_camera(extents, 640, 480, kBodyHeight, {600, 0});
   EXPECT_EQ(wrong->focal_px.mean, 600);
-  // What the picture tells is the horizon: it stays where it is.
+  // The picture determines the horizon: it stays where it is.
   EXPECT_NEAR(600 * std::tan(wrong->tilt.mean), 900 * std::tan(to_radians(8)), 12);
 }
 

@@ -7,10 +7,10 @@
 namespace silpose {
 namespace {
 
-constexpr int kLeastHeight = 24;             // pixels of a mask that tells anything
+constexpr int kLeastHeight = 24;             // pixels of a mask that is informative
 constexpr double kWidest = 1.3;              // of its height: a mask that is wider lies
 constexpr double kTrunk[] = {0.25, 0.5};     // rows of it, in parts of the height from the top
-constexpr double kHeadReach = 0.08;          // of the height: so far beside the trunk's middle a head may be
+constexpr double kHeadReach = 0.08;          // of the height: how far off the trunk's middle a head may be
 constexpr double kLegs = 0.2, kHead = 0.08;  // rows whose middle is taken, from below and from above
 
 // Middle of the set pixels of some rows, from column `begin` to `end`. Nothing where there is none.

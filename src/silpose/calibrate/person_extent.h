@@ -13,12 +13,12 @@ struct PersonExtent {
   double time_s = 0;
   Eigen::Vector2d head;    // middle of what is topmost above the trunk; its uppermost edge
   Eigen::Vector2d feet;    // middle of the legs' lowest part; its lowest edge
-  double slenderness = 0;  // height over the square root of the mask's area: less of who crouches or sits
+  double slenderness = 0;  // height over the square root of the mask's area: less for a person who crouches or sits
   [[nodiscard]] double height() const { return feet.y() - head.y(); }
 };
 
 // Its time is left to the caller. Nothing where the mask is empty, is cut by the picture's edge, is under 24 pixels
-// high, or lies rather than stands.
+// high, or is much wider than high.
 [[nodiscard]] std::optional<PersonExtent> person_extent(const Mask& mask);
 
 }  // namespace silpose

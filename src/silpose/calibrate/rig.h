@@ -1,5 +1,4 @@
-// Several cameras: where they stand, told by instants in which two of them see the board, and the bundle of all that
-// was seen.
+// Several cameras: their poses, from instants at which two of them see the board, and the bundle of all sightings.
 // For use inside module calibrate. Threads: functions without state.
 #pragma once
 
@@ -31,8 +30,8 @@ using SeenBoards = std::map<int64_t, SeenBoard>;
 Result<void> place_cameras(const Board& board, const std::vector<SeenBoards>& seen,
                            std::vector<PinholeCamera>& cameras);
 
-// The bundle of the cameras as they stand and the board's places at `instants`, each where the camera that explains it
-// best has it; the views of it in `views`, and the place of each instant in `place_of`.
+// The bundle of the cameras as they are and the board's poses at `instants`, each as estimated by the camera that
+// explains it best; the views of it in `views`, and the place of each instant in `place_of`.
 [[nodiscard]] Bundle make_bundle(const Board& board, const std::vector<SeenBoards>& seen,
                                  const std::vector<PinholeCamera>& cameras, const std::vector<int64_t>& instants,
                                  std::vector<BundleView>& views, std::map<int64_t, size_t>& place_of);

@@ -20,7 +20,7 @@ constexpr size_t kRightHip = 0, kLeftHip = 3;  // hip joints, in the list above
 
 constexpr double kTimeSlack = 1e-6;  // times are written with six decimals
 
-// The figures in the order in which they are told.
+// The figures in the order in which they are reported.
 enum FigureIndex {
   kPoseNpsu,
   kPoseDeg,

@@ -1,5 +1,5 @@
-// Interval coverage: is a claimed spread honest? The share of frames in which the truth lies inside the interval that
-// the tracker claims. A Gaussian's 90 % interval is the estimate and 1.645 spreads either way.
+// Interval coverage: whether a claimed spread is calibrated. The share of frames in which the truth lies inside the
+// interval that the tracker claims. A Gaussian's 90 % interval is the estimate and 1.645 spreads either way.
 // Threads: pure functions.
 #pragma once
 

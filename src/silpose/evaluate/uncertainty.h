@@ -1,6 +1,6 @@
-// Uncertainty: do claimed standard deviations tell how large the errors are? Their calibration (does an interval hold
-// the truth as often as it says), their order (are larger errors claimed to be larger), and what is gained where the
-// least sure frames are dropped.
+// Uncertainty: how well claimed standard deviations predict the errors. Their calibration (whether an interval contains
+// the truth as often as claimed), their order (whether larger errors are claimed to be larger), and what is gained by
+// dropping the least certain frames.
 // Based on: expected calibration error of quantiles (references.bib: kuleshov2018); rank correlation (spearman1904);
 // area under the receiver operating characteristic as a rank sum, ties counted half (hanley1982); risk and coverage
 // (geifman2017).
@@ -23,11 +23,11 @@ namespace silpose {
 // either side has one value only.
 [[nodiscard]] std::optional<double> rank_correlation(std::span<const double> a, std::span<const double> b);
 
-// How often a value that belongs to an event is above one that does not, equal ones counted half: 1 where they can be
-// told apart, 0.5 where the values tell nothing. Shapes: [N] each. Nothing where all are events, or none is.
+// How often a value that belongs to an event is above one that does not, equal ones counted half: 1 where the values
+// separate them, 0.5 where the values are uninformative. Shapes: [N] each. Nothing where all are events, or none is.
 [[nodiscard]] std::optional<double> roc_area(std::span<const double> values, const std::vector<bool>& is_event);
 
-// Mean error of the given share (0, 1] of items that are claimed to be surest, one at least: a point of the
+// Mean error of the given share (0, 1] of items that are claimed to be most certain, one at least: a point of the
 // risk-coverage curve. Where some items of equal uncertainty are kept and some are not, each counts with the mean of
 // all of these, so that the order of the items does not matter. Shapes: [N] each.
 [[nodiscard]] double mean_of_surest(std::span<const double> errors, std::span<const double> uncertainties,

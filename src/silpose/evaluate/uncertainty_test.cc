@@ -53,7 +53,7 @@ TEST(RankCorrelation, OfAConstantIsUnknown) {
 TEST(RocArea, ByHand) {
   EXPECT_THAT(roc_area(Values{1, 2, 3, 4}, {false, false, true, true}), Optional(1.0));
   EXPECT_THAT(roc_area(Values{1, 2, 3, 4}, {true, true, false, false}), Optional(0.0));
-  // Events 2 and 3 against 1, 2 and 4: above 1 twice, beside 2 once and above it once, below 4 twice: 3.5 of 6.
+  // Events 2 and 3 against 1, 2 and 4: above 1 twice, equal to 2 once and above it once, below 4 twice: 3.5 of 6.
   EXPECT_NEAR(roc_area(Values{2, 3, 1, 2, 4}, {true, true, false, false, false}).value(), 3.5 / 6, 1e-12);
 }
 

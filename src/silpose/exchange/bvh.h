@@ -1,7 +1,7 @@
 // BVH: motion-capture files read into a Clip, and poses of our skeletons written.
 // Based on: the Biovision hierarchy format as capture software writes it (references.bib: meredith2001).
-// Position channels stand for the joint's place in its parent, as most software takes them; where those of a joint that
-// is not a root are zero throughout, its OFFSET holds.
+// Position channels are the joint's position in its parent, as most software interprets them; where those of a joint
+// that is not a root are zero throughout, its OFFSET is used.
 // Threads: functions without state.
 #pragma once
 

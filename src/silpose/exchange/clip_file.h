@@ -1,4 +1,4 @@
-// Recorded motion from a file of any kind that is known, told by its name: .bvh, and .txt (humanoid3d).
+// Recorded motion from a file of any known kind, chosen by its extension: .bvh, and .txt (humanoid3d).
 // Threads: functions without state.
 #pragma once
 

@@ -17,7 +17,8 @@ class CsvReader {
   // `text` must outlive the reader; `file` names it in errors.
   CsvReader(std::string file, std::string_view text);
 
-  // Reads the first line. Returns where the required columns, then the optional ones stand: -1 where one is not there.
+  // Reads the first line. Returns the positions of the required columns, then of the optional ones: -1 where one is
+  // absent.
   // Errors: an empty file; a required column is missing; a column that is neither, or there twice.
   Result<std::vector<int>> read_header(std::span<const std::string> required, std::span<const std::string> optional);
 

@@ -66,7 +66,7 @@ Result<Frame> parse_frame(const json& values, const std::string& where) {
   std::array<double, kNumValues> numbers{};
   for (size_t i = 0; i < kNumValues; ++i) {
     numbers[i] = values[i].is_number() ? values[i].get<double>() : std::numeric_limits<double>::quiet_NaN();
-    if (!(std::abs(numbers[i]) <= kLargest)) return error("{}: value {} is not a number of use", where, i + 1);
+    if (!(std::abs(numbers[i]) <= kLargest)) return error("{}: value {} is not a usable number", where, i + 1);
   }
   Frame frame;
   frame.duration_s = numbers[0];

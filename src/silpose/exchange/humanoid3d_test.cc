@@ -126,7 +126,7 @@ TEST_F(Humanoid3d, NamesWhatIsWrong) {
   EXPECT_THAT(read_humanoid3d(path_.string() + ".none").error().message, HasSubstr(".none"));
 }
 
-TEST_F(Humanoid3d, IsToldByItsName) {
+TEST_F(Humanoid3d, IsRecognisedByItsName) {
   ASSERT_TRUE(read({standing()}));
   EXPECT_EQ(read_clip(path_).value().num_frames(), 1U);
   EXPECT_TRUE(is_clip_file("a/b.BVH"));

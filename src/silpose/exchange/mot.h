@@ -1,8 +1,8 @@
 // MOT: poses of the human as coordinates of Rajagopal2016, OpenSim's full-body model.
 // The model's body frames are X forward, Y up, Z to the right in its zero pose; its ground is our world as it is.
-// Angles come of rotation matrices between bodies, taken apart in the model's own order about its own axes. Source: the
-// model (references.bib: rajagopal2016) in OpenSim's distribution; docs/formats.md has the table. Threads: functions
-// without state.
+// Angles are those of the rotation matrices between bodies, decomposed in the model's own order about its own axes.
+// Source: the model (references.bib: rajagopal2016) in OpenSim's distribution; docs/formats.md has the table. Threads:
+// functions without state.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // PLY: the vertices of a mesh, as depth cameras' tools write it. Read: "binary_little_endian 1.0" whose first element
 // is `vertex` with scalar properties only, among them x, y and z of type float. Everything else of the file (texture
-// coordinates, faces) is passed over.
+// coordinates, faces) is ignored.
 // Based on: Greg Turk's PLY format (references.bib: turk1994).
 // Threads: a function without state.
 #pragma once

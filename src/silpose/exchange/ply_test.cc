@@ -45,7 +45,7 @@ TEST(ReadPlyVertices, FindsTheCoordinatesAmongOtherProperties) {
 
 TEST(ReadPlyVertices, SaysWhatIsWrong) {
   const std::string rows = row(1, 2, 3) + row(4, 5, 6);
-  const auto told = [&](const std::string& from, const std::string& to) {
+  const auto message = [&](const std::string& from, const std::string& to) {
     std::string header = kHeader;
     header.replace(header.find(from), from.size(), to);
     const auto vertices = read(header + rows);
@@ -55,11 +55,11 @@ TEST(ReadPlyVertices, SaysWhatIsWrong) {
   EXPECT_THAT(read(kHeader + row(1, 2, 3)).error().message, HasSubstr("ends before its 2 vertices"));
   EXPECT_THAT(read(kHeader + row(1, 2, 3) + row(std::numeric_limits<float>::quiet_NaN(), 0, 0)).error().message,
               HasSubstr("vertex 1 is not finite"));
-  EXPECT_THAT(told("binary_little_endian", "ascii"), HasSubstr("binary_little_endian"));
-  EXPECT_THAT(told("float y", "float q"), HasSubstr("x, y and z"));
-  EXPECT_THAT(told("float y", "double y"), HasSubstr("y is of type double"));
-  EXPECT_THAT(told("uchar kind", "list uchar int kind"), HasSubstr("type 'list'"));
-  EXPECT_THAT(told("element vertex 2", "element edge 2"), HasSubstr("first element is 'edge'"));
+  EXPECT_THAT(message("binary_little_endian", "ascii"), HasSubstr("binary_little_endian"));
+  EXPECT_THAT(message("float y", "float q"), HasSubstr("x, y and z"));
+  EXPECT_THAT(message("float y", "double y"), HasSubstr("y is of type double"));
+  EXPECT_THAT(message("uchar kind", "list uchar int kind"), HasSubstr("type 'list'"));
+  EXPECT_THAT(message("element vertex 2", "element edge 2"), HasSubstr("first element is 'edge'"));
   EXPECT_THAT(read_ply_vertices("/nowhere/mesh.ply").error().message, HasSubstr("/nowhere/mesh.ply"));
 }
 

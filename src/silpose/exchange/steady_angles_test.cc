@@ -44,7 +44,7 @@ TEST(SteadyAngles, ArePlainInTheFirstFrame) {
   EXPECT_LT((SteadyAngles().next(rotation(0, to_radians(120), 0)) - Vector3d(0, to_radians(120), 0)).norm(), 1e-9);
 }
 
-TEST(SteadyAngles, KeepTheTwistWhereItCannotBeTold) {
+TEST(SteadyAngles, KeepTheTwistWhereItIsUndetermined) {
   for (const double sign : {1.0, -1.0}) {
     SteadyAngles steady;
     for (const double x : {0.0, 1.0, kPi / 2}) {

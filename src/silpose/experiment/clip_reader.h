@@ -1,7 +1,7 @@
-// ClipReader: recorded videos as what a segmenter sees in them. Segmenting takes longer than tracking and depends on
-// nothing that the tracker is asked, so that each video is segmented once and kept; those used least recently are
-// dropped where they are more than `keep_bytes`. What is read does not depend on what was kept: each video is segmented
-// from its first frame on by itself, without a tracker that tells where the subject is expected.
+// ClipReader: recorded videos as a segmenter's observations. Segmenting takes longer than tracking and does not depend
+// on the tracker's options, so each video is segmented once and kept; those used least recently are dropped where they
+// are more than `keep_bytes`. What is read does not depend on what was kept: each video is segmented from its first
+// frame on by itself, without a tracker that predicts where the subject is.
 // Threads: one thread; segmenters work on all cores themselves.
 #pragma once
 

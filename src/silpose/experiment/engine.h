@@ -1,5 +1,5 @@
 // Runs every cell of a grid for every seed, one after the other (a run itself uses all cores), and keeps each finished
-// run as a file, so that a stopped experiment goes on where it was.
+// run as a file, so that a stopped experiment resumes where it was.
 // Threads: one thread.
 #pragma once
 

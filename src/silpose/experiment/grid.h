@@ -30,14 +30,14 @@ struct TableDescription {
   std::vector<std::string> columns;  // axes: the figures again for each combination of theirs
   std::vector<std::string> figures;
   std::string family;     // one row also for each score "FAMILY/MEMBER", with its mean; instead of figures
-  std::string beside;     // CSV beside the description: columns to join by those that are named as `rows`
+  std::string beside;     // CSV next to the description: columns to join by those that are named as `rows`
   bool mean_row = false;  // a last row over all
 };
 
 // Bars: x is an axis. Lines: x is "frame", and `figure` a column of the runs' frames.
 struct PlotDescription {
   std::string name, title, x, series, figure, label;
-  std::vector<std::string> beside;  // of bars: columns of the first table's CSV beside it, drawn too
+  std::vector<std::string> beside;  // of bars: columns of the first table's joined CSV, drawn too
 };
 
 struct Grid {

@@ -99,7 +99,7 @@ Result<Cell> figure_of(std::span<const FinishedRun* const> runs, const FigureNam
   return error("figure {}:{}: max, min, median, sum or percent", figure.score, figure.how);
 }
 
-// A CSV beside the description, as texts.
+// A CSV next to the description, as texts.
 struct Beside {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;

@@ -28,7 +28,7 @@ struct ResultTable {
   std::vector<std::vector<Cell>> rows;  // [R][columns]
 };
 
-// Errors: a figure that says :HOW and HOW is not known; a CSV beside the description that is missing or malformed.
+// Errors: a figure that says :HOW and HOW is not known; a CSV next to the description that is missing or malformed.
 Result<ResultTable> make_table(const Grid& grid, const TableDescription& description,
                                std::span<const FinishedRun> runs);
 

@@ -191,7 +191,7 @@ SvgSeries line_series(const Grid& grid, const PlotDescription& plot, std::span<c
   return series;
 }
 
-// Columns of the main table that came from the CSV beside it, in the order of the plot's categories.
+// Columns of the main table that came from the joined CSV, in the order of the plot's categories.
 void add_beside(const PlotDescription& plot, const ResultTable& table, SvgPlot& svg) {
   for (const std::string& name : plot.beside) {
     const auto column = std::find(table.columns.begin(), table.columns.end(), name);

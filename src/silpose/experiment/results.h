@@ -14,7 +14,7 @@
 
 namespace silpose {
 
-// How the results were made, as results.json tells it.
+// How the results were made, as results.json records it.
 struct ResultFacts {
   std::string command, commit, machine;
   uint64_t seed = 1;

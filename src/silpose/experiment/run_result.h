@@ -1,5 +1,5 @@
-// RunResult: what came of one run: scores by name, and a row of numbers a frame. Kept as one small JSON file each, so
-// that a stopped experiment goes on where it was.
+// RunResult: the result of one run: scores by name, and a row of numbers per frame. Kept as one small JSON file each,
+// so that a stopped experiment resumes where it was.
 // Threads: values and functions without state.
 #pragma once
 
@@ -25,10 +25,10 @@ struct RunResult {
 // The unit of a score by the ending of its name: "mm", "px", "deg", "NPSU", "frames/s", "s"; "1" for the rest.
 std::string unit_of(std::string_view score);
 
-// A run's file. `settings` tells which run it is. Errors: not writable.
+// A run's file. `settings` identifies the run. Errors: not writable.
 Result<void> write_run(const std::filesystem::path& file, std::string_view settings, const RunResult& run);
 
-// Nothing where there is no such file, or it is of other settings, or broken: the run is then to be done.
+// Nothing where there is no such file, or it is of other settings, or broken: the run must then be done.
 std::optional<RunResult> read_run(const std::filesystem::path& file, std::string_view settings);
 
 }  // namespace silpose

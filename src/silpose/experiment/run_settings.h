@@ -1,5 +1,5 @@
-// RunSettings: all that tells one run of an experiment from another, apart from its seed: the sequence and how its
-// masks are degraded, or the recorded clip and how it is segmented; and the tracker. These are the keys of [run] in
+// RunSettings: all that distinguishes one run of an experiment from another, apart from its seed: the sequence and how
+// its masks are degraded, or the recorded clip and how it is segmented; and the tracker. These are the keys of [run] in
 // experiments/NAME.toml (docs/formats.md). Threads: values and functions without state.
 #pragma once
 
@@ -25,9 +25,9 @@ struct RunSettings {
   // The masks.
   std::string mask_noise = "none";  // synth/degraded_mask.h: none, shadow, edge, limb, hole
   double mask_iou = 0.9;            // of edge: with the true masks, on average
-  bool faults_known = false;        // pixels that are wrong, and those beside them, are marked as unsure: the most that
+  bool faults_known = false;        // wrong pixels, and those next to them, are marked as uncertain: the best that
                                     // a segmenter's confidence could give
-  bool keypoints = false;           // beside each mask those that a network might see (synth/simulated_keypoints.h)
+  bool keypoints = false;           // with each mask, those that a network might see (synth/simulated_keypoints.h)
   // A recorded clip in place of both. Paths are relative to the data folder.
   std::vector<std::string> clip;          // one video a camera, in step; empty: the run is on a rendered sequence
   std::string camera;                     // calibration: .toml, or .json as docs/formats.md says

@@ -173,7 +173,7 @@ void add_row(int64_t frame, double time_s, const FrameEvaluation* figures, const
   run.frames.push_back(std::move(row));
 }
 
-// Scores that the rows alone tell.
+// Scores that are computed from the rows alone.
 void add_row_scores(bool has_joints, RunResult& run) {
   for (size_t column = 2; column < run.frame_columns.size(); ++column) {
     add_mean_and_deviation(run.frame_columns[column], run.frames, column, run);

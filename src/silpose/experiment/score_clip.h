@@ -18,8 +18,8 @@ namespace silpose {
 inline constexpr double kWrongMm = 50;
 
 // Columns a frame, the same for any truth: those of evaluate/evaluation.h, knee_error_deg (mean absolute error of both
-// knees' flexion, told from hip, knee and ankle), joint_sd_mm (mean of the claimed deviations of the joints that the
-// truth has, each the root of its summed variances), surface_error_mm and surface_median_mm (over the points of the
+// knees' flexion, computed from hip, knee and ankle), joint_sd_mm (mean of the claimed deviations of the joints that
+// the truth has, each the root of its summed variances), surface_error_mm and surface_median_mm (over the points of the
 // true surface, distance to the nearest vertex of the posed body), observed_iou (of the estimate's silhouette with the
 // mask that was found, first camera). Scores: the mean of each over frames and, as NAME_sd, its deviation;
 // frames, frames_missing (without a pose). Against joints also lost and in_basin (score_run.h), worst_frame_mm (the
@@ -28,7 +28,7 @@ inline constexpr double kWrongMm = 50;
 //   ece_joint                      evaluate/uncertainty.h, over coordinates
 //   rank_correlation               of a joint's claimed deviation with its error
 //   roc_area_50mm                  of that deviation for joints off by more than kWrongMm
-//   risk_100_mm, 80, 60, 40        joint_error_root_mm over so many percent of the frames, the surest by joint_sd_mm
+//   risk_100_mm, 80, 60, 40        joint_error_root_mm over that percentage of frames, the most certain by joint_sd_mm
 // Claimed deviations of joints are those of their places relative to the root joint. Against surfaces only the frames
 // that have one count. Errors: those of evaluate_frames(). REQUIRES: a report; a camera.
 Result<RunResult> score_clip(const ClipTruth& truth, const BodyModel& body, std::span<const PinholeCamera> cameras,

@@ -12,7 +12,7 @@
 namespace silpose {
 namespace {
 
-// Reports that tell the truth, with a spread of `spread` in everything.
+// Reports of the true poses, with a spread of `spread` in everything.
 std::vector<StepReport> true_reports(const SyntheticSequence& scene, double spread) {
   std::vector<StepReport> reports;
   for (int t = 0; t < scene.num_frames(); ++t) {

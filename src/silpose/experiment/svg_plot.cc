@@ -13,7 +13,7 @@ namespace silpose {
 namespace {
 
 constexpr double kHeight = 420, kLeft = 70, kRight = 24, kTop = 64, kBottom = 66;
-// Colours that people with any colour vision tell apart.
+// Colours that people with any colour vision can distinguish.
 constexpr std::array<const char*, 6> kColours = {"#0072b2", "#e69f00", "#009e73", "#d55e00", "#56b4e9", "#cc79a7"};
 
 const char* colour_of(size_t series) { return kColours[series % kColours.size()]; }

@@ -40,7 +40,7 @@ Result<void> take(const Result<T>& read, U& into) {
   return {};
 }
 
-// Settings that were given, and where: "motion" to "grid.toml: run.motion".
+// Settings that were given, and where: "motion" maps to "grid.toml: run.motion".
 using GivenSettings = std::map<std::string, std::string, std::less<>>;
 
 // Changes the settings that a table names, and notes them in `given`. `where` begins the name of each in errors.

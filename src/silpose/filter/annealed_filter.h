@@ -1,4 +1,4 @@
-// AnnealedFilter: a particle filter whose every step goes through layers that sharpen the likelihood and narrow the
+// AnnealedFilter: a particle filter in which every step goes through layers that sharpen the likelihood and narrow the
 // noise, to find the best of many peaks with few particles. Its weights are no posterior (they are as flat as the
 // survival rate makes them): the mean is good, the spread says how narrow the last layer is.
 // Based on: Deutscher & Reid 2005 (references.bib: deutscher2005). One thing is ours: the best particle so far goes

@@ -1,5 +1,5 @@
-// Estimates: what a weighted particle set says: mean, mode, the mean of the cluster around the mode, and spread.
-// Circular columns are angles in radians whose values wrap: their mean is the direction of the mean unit vector.
+// Estimates from a weighted particle set: mean, mode, the mean of the cluster around the mode, and spread. Circular
+// columns are angles in radians whose values wrap: their mean is the direction of the mean unit vector.
 // Source: weighted mean, thesis eq. 2.20 (references.bib: cormier2019); mean shift, comaniciu2002.
 // Threads: functions without state; sums run in index order.
 #pragma once
@@ -30,8 +30,8 @@ struct Cluster {
   double weight = 0;         // share of all weight that lies within one bandwidth of the mean: 1 when all agree
 };
 
-// Where mean shift from the mode comes to rest: the estimate for a posterior with several hypotheses. The distance of
-// two states is the root mean square over columns of their difference / scale [D]; columns of scale 0 do not count.
+// Where mean shift from the mode converges: the estimate for a posterior with several hypotheses. The distance of two
+// states is the root mean square over columns of their difference / scale [D]; columns of scale 0 do not count.
 // Errors: as weighted_mean; bandwidth not positive; scale negative or all 0.
 // Source: comaniciu2002, Gaussian kernel.
 [[nodiscard]] Cluster cluster_estimate(const StateBatch& states, std::span<const double> weight,

@@ -1,5 +1,5 @@
 // Log weights: normalising, log-sum-exp and the effective sample size. Silhouettes have thousands of pixels, so a
-// likelihood underflows as a number: everything up to the last moment is kept as its logarithm.
+// likelihood underflows as a number: logarithms are kept up to the last step.
 // Based on: effective sample size as in thesis eq. 4.1 (references.bib: cormier2019).
 // Threads: functions without state; sums run in index order.
 #pragma once

@@ -1,5 +1,5 @@
-// ParticleFilter: sequential importance resampling over rows of numbers. It knows no bodies: what moves particles,
-// weighs them and makes lost ones anew are batch callables given to each step.
+// ParticleFilter: sequential importance resampling over rows of numbers. It knows nothing about bodies: batch callables
+// given to each step move particles, weigh them and regenerate lost ones.
 // Based on: Salmond & Gordon 2005; thesis section 2.4 (references.bib: salmond2005, cormier2019).
 // Threads: one thread at a time; the callables may be parallel inside. Results depend on the seed alone.
 #pragma once

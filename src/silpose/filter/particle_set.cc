@@ -29,7 +29,8 @@ void ParticleSet::resample(const Resampler& resampler, const Regenerate& regener
     next.row(i) = states.row(ancestor == kRegenerate ? i : ancestor);
   }
   if (!new_rows.empty()) {
-    check(static_cast<bool>(regenerate), "ParticleSet: the resampler makes particles anew, but no way was given");
+    check(static_cast<bool>(regenerate),
+          "ParticleSet: the resampler asks for new particles, but `regenerate` is empty");
     regenerate(next, new_rows, stream);
   }
   *this = uniform(std::move(next));

@@ -14,11 +14,11 @@
 
 namespace silpose {
 
-// Moves every state [N, D] on in time. `stream` is the step coordinate of the random streams to use (base/rng.h).
+// Moves every state [N, D] forward in time. `stream` is the step coordinate of the random streams to use (base/rng.h).
 using Propagate = std::function<void(StateBatch& states, uint64_t stream)>;
 // Log-likelihood [N] of states [N, D], up to a constant; minus infinity is impossible.
 using LogLikelihood = std::function<void(const StateBatch& states, std::span<double> log_likelihood)>;
-// Makes the given rows anew: at random, or by a proposal.
+// Regenerates the given rows: at random, or by a proposal.
 using Regenerate = std::function<void(StateBatch& states, std::span<const int> rows, uint64_t stream)>;
 
 struct FilterReport {

@@ -1,15 +1,15 @@
-// Resampling: which particles go on. Every scheme has one signature:
+// Resampling: which particles survive. Every scheme has one signature:
 //
 //   log_weight [N]   need not be normalised; minus infinity is weight zero; all minus infinity counts as uniform.
 //   num_samples M    how many particles to make; M may differ from N.
 //   rng              the stream of this step's resampling.
-//   returns [M]      ancestor indices into [0, N), in no promised order, or kRegenerate: a particle to be made anew.
+//   returns [M]      ancestor indices into [0, N), in no promised order, or kRegenerate: a particle to be regenerated.
 //
 // A scheme is unbiased when index i comes up M * w_i times on average. A particle of weight zero never comes up unless
 // all are zero. Which to choose:
 //
 //   systematic   unbiased, and each count within one of M * w_i; the default.
-//   comb         sorts by weight, has the lowest share of the particles made anew and combs over the others: thesis
+//   comb         sorts by weight, has the lowest share of the particles regenerated and combs over the others: thesis
 //                Fig. 2.26. Biased, but finds lost subjects again. With a share of 0 it is systematic on sorted
 //                weights.
 //
@@ -38,7 +38,7 @@ class Resampler {
                                                   Rng& rng) const = 0;
 };
 
-// `name` is "systematic" or "comb"; `regenerate_fraction`, in [0, 1), is comb's share of particles to be made anew.
+// `name` is "systematic" or "comb"; `regenerate_fraction`, in [0, 1), is comb's share of particles to be regenerated.
 // Errors: unknown name, or a scheme that is not built; fraction out of range.
 Result<std::unique_ptr<Resampler>> make_resampler(const std::string& name, double regenerate_fraction = 0.2);
 

@@ -109,7 +109,7 @@ TEST_P(UnbiasedResampler, KeepsExpectedCounts) {
 
 INSTANTIATE_TEST_SUITE_P(All, UnbiasedResampler, testing::Values("systematic", "comb"));
 
-// Thesis Fig. 2.26: 14 particles, half of them made anew, 7 teeth over the heavier half.
+// Thesis Fig. 2.26: 14 particles, half of them regenerated, 7 teeth over the heavier half.
 TEST(CombResampling, RegeneratesTheLowestWeightedHalf) {
   const auto comb = make_resampler("comb", 0.5).value();
   const std::vector<double> weight = {14, 1, 13, 2, 12, 3, 11, 4, 10, 5, 9, 6, 8, 7};
@@ -121,7 +121,7 @@ TEST(CombResampling, RegeneratesTheLowestWeightedHalf) {
       if (a == kRegenerate) continue;
       EXPECT_GE(weight[static_cast<size_t>(a)], 8);
     }
-    // Teeth are 77 / 7 = 11 apart: whoever weighs at least that much is hit.
+    // Teeth are 77 / 7 = 11 apart: a particle that weighs at least that much is hit.
     for (const int heavy : {0, 2, 4, 6}) EXPECT_TRUE(std::count(ancestors.begin(), ancestors.end(), heavy) >= 1);
   }
 }

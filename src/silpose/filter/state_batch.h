@@ -1,4 +1,4 @@
-// StateBatch: the states of N particles, one row each. Filters know no bodies: a row is D numbers.
+// StateBatch: the states of N particles, one row each. Filters know nothing about bodies: a row is D numbers.
 // Threads: a value.
 #pragma once
 

@@ -9,7 +9,7 @@
 
 namespace silpose {
 
-// What a filter goes on from, besides its options.
+// What a filter resumes from, besides its options.
 struct FilterState {
   ParticleSet particles;
   uint64_t step = 0;
@@ -25,12 +25,13 @@ class SteppedParticles {
   // ParticleSet::inject: candidates [K, D] for the K lowest weighted particles.
   void inject(const StateBatch& candidates) { now_.particles.inject(candidates); }
 
-  // Starts over from states [N, D], equally weighted; the step counter goes on.
+  // Starts over from states [N, D], equally weighted; the step counter continues.
   void restart(StateBatch states) { now_.particles = ParticleSet::uniform(std::move(states)); }
 
   [[nodiscard]] const ParticleSet& particles() const { return now_.particles; }
 
-  // What another filter of the same options goes on from, as this one would. REQUIRES: states of the same D.
+  // State from which another filter with the same options continues exactly as this one would. REQUIRES: states of the
+  // same D.
   [[nodiscard]] const FilterState& state() const { return now_; }
   void restore(FilterState state) { now_ = std::move(state); }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr int kLargestPicture = 16384;   // pixels a side
 constexpr double kPixelCentre = 0.5;     // the library's pixels less OpenCV's
 constexpr double kFarCentre = 100;       // a camera further from the origin than this is probably in millimetres
-constexpr double kClearlyUpright = 0.7;  // cosine between the cameras' mean up direction and the axis taken for up
+constexpr double kClearlyUpright = 0.7;  // cosine between the cameras' mean up direction and the axis assumed to be up
 
 // One camera as the file has it: the file's own world and unit.
 struct FileCamera {
@@ -119,7 +119,7 @@ Result<FileCamera> read_camera(const std::string& file, std::string_view key, co
   return result;
 }
 
-// Other tables (metadata, a capture volume, a board) stand beside the cameras; none has these keys.
+// Other tables (metadata, a capture volume, a board) are next to the cameras; none has these keys.
 bool is_camera(const toml::table& table) {
   return table.contains("matrix") || table.contains("distortions") ||
          (table.contains("size") && (table.contains("rotation") || table.contains("translation")));
@@ -165,8 +165,8 @@ Eigen::Vector3d mean_up(const std::vector<FileCamera>& cameras) {
   return sum / static_cast<double>(cameras.size());
 }
 
-// Tells the up axis where the file does not. The axis is the one nearest to the line of the mean up direction; a world
-// whose axis points down, as one fixed to its first camera does, is turned over.
+// Determines the up axis where the file does not specify it. The axis is the one nearest to the line of the mean up
+// direction; a world whose axis points down, as one fixed to its first camera does, is turned over.
 void assume_up(const std::string& file, const std::vector<FileCamera>& cameras, Calibration& calibration) {
   const Eigen::Vector3d up = mean_up(cameras);
   const bool is_z = std::abs(up.z()) > std::abs(up.y());

@@ -24,7 +24,7 @@ struct CalibrationOptions {
 struct Calibration {
   std::vector<PinholeCamera> cameras;    // [C] in file order
   UpAxis up = UpAxis::kY;                // of the file's own world
-  bool up_assumed = false;               // not said in the file: told from the cameras' mean up direction
+  bool up_assumed = false;               // not in the file: derived from the cameras' mean up direction
   bool up_reversed = false;              // assumed, and the axis points down: the world was turned over
   std::vector<std::string> warnings;     // one line each
 };

@@ -129,7 +129,7 @@ TEST_F(CalibrationFile, TurnsAZUpWorld) {
   }
 }
 
-TEST_F(CalibrationFile, TellsTheUpAxisFromTheMeanOfRolledCameras) {
+TEST_F(CalibrationFile, DeterminesTheUpAxisFromTheMeanOfRolledCameras) {
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ(), x = Eigen::Vector3d::UnitX();
   const auto y_up = load(level_camera("a", y, z, 0.5) + level_camera("b", y, -z, 0.4) + level_camera("c", y, x)).value();
   EXPECT_EQ(y_up.up, UpAxis::kY);

@@ -38,7 +38,7 @@ struct PinholeCamera {
   // Undistorted direction (z = 1) in camera coordinates of a pixel; the inverse of project_from_camera.
   [[nodiscard]] Eigen::Vector3d ray_from_pixel(const Eigen::Vector2d& pixel) const;
 
-  // Where the camera stands, world coordinates.
+  // The camera's position, world coordinates.
   [[nodiscard]] Eigen::Vector3d centre_in_world() const;
 
   // The same view drawn at another picture size.

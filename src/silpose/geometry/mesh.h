@@ -1,4 +1,4 @@
-// Mesh: an indexed triangle mesh, and what one asks of it before trusting its silhouette.
+// Mesh: an indexed triangle mesh, and the checks to make before trusting its silhouette.
 // Threads: values and pure functions.
 #pragma once
 

@@ -22,8 +22,8 @@ extern "C" {
 namespace silpose {
 
 struct ClipForTest {
-  std::string codec = "libx264", pixel_format = "yuv420p";  // the container is told by the file's extension
-  int rate = 30;                                            // frames a second
+  std::string codec = "libx264", pixel_format = "yuv420p";  // the file's extension determines the container
+  int rate = 30;                                            // frames per second
   std::vector<int64_t> times_ms;                            // of the frames; empty: even
   AVRational pixel_aspect = {1, 1};
   AVColorSpace colour_space = AVCOL_SPC_UNSPECIFIED;

@@ -21,7 +21,7 @@ std::string ffmpeg_path(const std::string& path) { return "file:" + std::filesys
 
 void silence_ffmpeg() {
   static std::once_flag once;
-  // Not its level: OpenCV sets that anew whenever it opens something.
+  // Not its level: OpenCV resets that whenever it opens something.
   std::call_once(once, [] { av_log_set_callback([](void*, int, const char*, va_list) {}); });
 }
 

@@ -1,5 +1,5 @@
-// Owners of FFmpeg's objects, its codes as text, and what its versions (5.1 to 7.1) call differently. For the readers
-// and writers of video in this module alone.
+// Owners of FFmpeg's objects, its error codes as text, and what is named differently in its versions (5.1 to 7.1). Only
+// for the readers and writers of video in this module.
 // Threads: functions without state; silence_ffmpeg() holds for all threads from the first call on.
 #pragma once
 
@@ -32,7 +32,7 @@ using ScalerHandle = std::unique_ptr<SwsContext, FfmpegDelete>;
 // "No space left on device".
 std::string ffmpeg_text(int code);
 
-// A path as FFmpeg takes it, whatever colons and percent signs are in it.
+// A path as FFmpeg takes it, even if it contains colons and percent signs.
 std::string ffmpeg_path(const std::string& path);
 
 // Keeps FFmpeg and its codecs from printing.
@@ -44,9 +44,9 @@ void silence_ffmpeg();
 // Of two fields, the upper line of the earlier one, or of none.
 void set_interlaced(AVFrame& frame, bool is_interlaced);
 
-// What the container says beside the pictures, owned by the stream; null: nothing of that type.
+// Side data of the container, owned by the stream; null: none of that type.
 [[nodiscard]] const uint8_t* side_data_of(const AVStream& stream, AVPacketSideDataType type);
-// `size` bytes of it to be filled in before the header is written; null: no memory.
+// `size` bytes of side data to fill in before the header is written; null: out of memory.
 [[nodiscard]] uint8_t* add_side_data(AVStream& stream, AVPacketSideDataType type, size_t size);
 
 }  // namespace silpose

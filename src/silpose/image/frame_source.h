@@ -1,5 +1,5 @@
-// FrameSource: where one camera's pictures come from: a video file, a list of picture files, a live camera. What Video
-// is made of; not for use elsewhere.
+// FrameSource: where one camera's pictures come from: a video file, a list of picture files, a live camera. Used by
+// Video; not for use elsewhere.
 // Threads: one thread per source.
 #pragma once
 
@@ -17,7 +17,7 @@ namespace silpose {
 
 struct Picture {
   ByteImage image;                 // [H, W, 3]
-  std::optional<int64_t> time_ns;  // since the first picture; nothing where the input does not say
+  std::optional<int64_t> time_ns;  // since the first picture; nothing where the input has no times
 };
 
 class FrameSource {
@@ -29,16 +29,16 @@ class FrameSource {
   [[nodiscard]] virtual bool has_times() const { return false; }
   [[nodiscard]] virtual int64_t num_frames_hint() const { return 0; }  // 0: unknown
   [[nodiscard]] virtual bool is_live() const { return false; }
-  // The lens's focal length as the 35 mm equivalent by the input's metadata, mm; nothing where they do not say.
+  // The lens's focal length as the 35 mm equivalent from the input's metadata, mm; nothing where they lack it.
   [[nodiscard]] virtual std::optional<double> focal_mm35() const { return {}; }
-  // Of its pictures, growing; empty: they are counted from 0.
+  // The numbers of its pictures, ascending; empty: they are counted from 0.
   [[nodiscard]] virtual std::span<const int64_t> numbers() const { return {}; }
 
   // The next picture, nothing at the end.
   virtual Result<std::optional<Picture>> next() = 0;
-  // At the end: it came before the input said it would.
+  // At the end: whether it came earlier than the input announced.
   [[nodiscard]] virtual bool broke_off() const { return false; }
-  // What the user should know of the pictures read so far, one line each.
+  // What the user should know about the pictures read so far, one line each.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 
   // Back to the first picture.

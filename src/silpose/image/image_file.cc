@@ -13,7 +13,7 @@ namespace silpose {
 namespace {
 
 // The decoders print about broken files instead of only failing, or return half a picture: so look first whether the
-// file goes on to its end mark.
+// file continues to its end mark.
 bool is_cut_off(std::string_view bytes) {
   if (bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n") {
     for (size_t at = 8; at + 12 <= bytes.size();) {

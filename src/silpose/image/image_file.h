@@ -12,7 +12,7 @@
 
 namespace silpose {
 
-// What is larger (8192x8192) is refused: a clip of such pictures fills any memory.
+// Larger pictures (than 8192x8192) are refused: a clip of them fills any memory.
 inline constexpr uint64_t kMostPixels = uint64_t{1} << 26;
 
 // 16-bit and transparent pictures come as 8-bit colour. Errors: no such file, empty, not a picture, more than
@@ -27,7 +27,7 @@ using DepthImage = Image<uint16_t>;
 Result<DepthImage> read_depth_image(const std::filesystem::path& path);
 Result<void> write_depth_image(const std::filesystem::path& path, const DepthImage& image);
 
-// 1 or 3 channels; the format is told by the extension. Errors: not writable.
+// 1 or 3 channels; the extension determines the format. Errors: not writable.
 Result<void> write_image(const std::filesystem::path& path, const ByteImage& image);
 Result<void> write_mask(const std::filesystem::path& path, const Mask& mask);
 

@@ -1,6 +1,6 @@
 // Keypoints3D: where a network believes the points of a body to be in space, seen in one image. Only their places
-// relative to each other are known, and only in the scale of the network's own idea of a body: directions between two
-// points mean more than distances. Threads: a value.
+// relative to each other are known, and only in the scale of the network's internal body: directions between two points
+// are more reliable than distances. Threads: a value.
 #pragma once
 
 #include <array>

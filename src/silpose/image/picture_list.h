@@ -1,4 +1,4 @@
-// PictureList: the picture files that a folder, a printf pattern or a single name stand for, and their numbers.
+// PictureList: the picture files that a folder, a printf pattern or a single name denotes, and their numbers.
 // Threads: functions without state.
 #pragma once
 
@@ -13,14 +13,14 @@ namespace silpose {
 
 struct PictureList {
   std::vector<std::filesystem::path> paths;  // in the order of their numbers, or of their names where not all have one
-  std::vector<int64_t> numbers = {};         // one a path, growing; or none: counted from 0
+  std::vector<int64_t> numbers = {};         // one per path, ascending; or none: counted from 0
 };
 
-// Told by its extension.
+// By its extension.
 bool is_picture_name(const std::filesystem::path& path);
 
-// open_video() says which names have numbers. Errors: missing, no picture in it, a number that is there twice, a gap in
-// a pattern's numbers.
+// open_video() documents which names have numbers. Errors: missing, no picture in it, a number that is there twice, a
+// gap in a pattern's numbers.
 Result<PictureList> list_pictures(const std::string& input);
 
 }  // namespace silpose

@@ -18,7 +18,7 @@ std::optional<HdrTransfer> hdr_transfer_of(const AVFrame& frame);
 
 class PixelConverter {
  public:
-  // [H, W, 3] It stands until the next call. Errors: too large, no memory, pixels of an unknown kind.
+  // [H, W, 3] Valid until the next call. Errors: too large, no memory, pixels of an unknown kind.
   Result<cv::Mat> convert(const AVFrame& frame);
 
  private:

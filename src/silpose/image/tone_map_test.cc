@@ -137,9 +137,8 @@ TEST(ToneMap, ClipsComeBackInTheColoursThatWereFilmed) {
             << (is_hlg ? "HLG, patch " : "PQ, patch ") << patch << ", channel " << c;
       }
     }
-    EXPECT_THAT(video.warnings(),
-                ElementsAre(EndsWith(is_hlg ? "HDR (HLG), taken as a screen of standard range shows it"
-                                            : "HDR (PQ), taken as a screen of standard range shows it")));
+    EXPECT_THAT(video.warnings(), ElementsAre(EndsWith(is_hlg ? "HDR (HLG), converted to standard range"
+                                                              : "HDR (PQ), converted to standard range")));
   }
   std::filesystem::remove(path);
 }

@@ -47,7 +47,7 @@ struct Video::Impl {
     return camera;
   }
 
-  // Reads what belongs together: cameras whose picture is older than another's go on to their next, so that a picture
+  // Reads what belongs together: cameras whose picture is older than another's advance to their next, so that a picture
   // that one of them dropped is left out for all. False: one of them has ended.
   Result<bool> read_instant() {
     for (Camera& camera : cameras) {

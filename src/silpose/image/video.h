@@ -31,11 +31,11 @@ class Video {
   [[nodiscard]] int num_cameras() const;
   [[nodiscard]] int width(int camera = 0) const;
   [[nodiscard]] int height(int camera = 0) const;
-  // The nominal rate; of a clip of variable rate its mean. Where frames lie in time is theirs to say.
+  // The nominal rate; of a clip of variable rate its mean. The times of frames are in the frames themselves.
   [[nodiscard]] double fps() const;
   [[nodiscard]] bool fps_assumed() const;  // the input carries no rate
   [[nodiscard]] bool is_live() const;      // a camera: cannot rewind
-  // Frames as the container tells (0: unknown); the truth is known at the end.
+  // Number of frames according to the container (0: unknown); the true number is known at the end.
   [[nodiscard]] int64_t num_frames_hint() const;
   // Of the first frame: 0, or the number of the first of numbered pictures.
   [[nodiscard]] int64_t first_index() const;
@@ -50,8 +50,8 @@ class Video {
   // off before the frames its container promises is the end, and truncated() says so.
   Result<std::optional<Frame>> next();
   [[nodiscard]] bool truncated() const;
-  // What the user should know of this input as far as it was read (made square, interlaced, breaks off, ...), one line
-  // each.
+  // What the user should know about this input as far as it was read (made square, interlaced, breaks off, ...), one
+  // line each.
   [[nodiscard]] std::vector<std::string> warnings() const;
 
   // Back to the first frame. Errors: a live camera; the input vanished.
@@ -85,7 +85,7 @@ class Video {
 
 // Opens a file, a directory of pictures, a printf pattern ("img-%06d.png") or "camera:N".
 // A file's frames are as a player shows them: turned upright, of square pixels, each at the time its container says,
-// counted from the first one's; where it says none, index / fps. Several cameras' frames go together by their times.
+// counted from the first one's; where it has none, index / fps. Several cameras' frames go together by their times.
 // Pictures whose names are one text and a number up to 99,999,999 each (000030.png, walk-7.png) come in the order of
 // their numbers, which are the indices of their frames; gaps stay gaps, in time too. Other pictures come in the order
 // of their names, counted from 0. So do those of several inputs whose numbers differ.
@@ -102,10 +102,10 @@ class VideoWriter {
   VideoWriter& operator=(VideoWriter&&) noexcept;
   ~VideoWriter();
 
-  // At `time_ns`, in the first picture's own time, or one frame's time after the last. Errors: size other than the
+  // At `time_ns`, in the first picture's own time, or one frame interval after the last. Errors: size other than the
   // first picture's; the encoder refuses; not writable. REQUIRES: times that grow.
   Result<void> write(const ByteImage& image, std::optional<int64_t> time_ns = {});
-  // Errors: not writable (disk full). Nothing to do the second time.
+  // Errors: not writable (disk full). A second call does nothing.
   Result<void> close();
 
  private:

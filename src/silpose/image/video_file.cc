@@ -75,7 +75,7 @@ class VideoFile : public FrameSource {
   }
 
   Result<std::optional<Picture>> next() override {
-    constexpr int kMostFailures = 1000;  // of a decoder that goes on failing without taking anything in
+    constexpr int kMostFailures = 1000;  // of a decoder that keeps failing without consuming input
     for (int failures = 0; failures < kMostFailures;) {
       const int code = avcodec_receive_frame(decoder_.get(), decoded_.get());
       if (code == 0) return picture();
@@ -92,7 +92,7 @@ class VideoFile : public FrameSource {
   }
 
  private:
-  // Anew for a rewind, too: seeking is not exact in every container.
+  // Reopened for a rewind, too: seeking is not exact in every container.
   Result<void> open() {
     decoder_.reset();
     AVFormatContext* opened = nullptr;
@@ -117,11 +117,11 @@ class VideoFile : public FrameSource {
       return error("{}: {}", name_, has_sound ? "sound without a video" : "not a video");
     }
     stream_ = stream;
-    fps_ = 0;  // until the decoder may have told it
+    fps_ = 0;  // until the decoder may have reported it
     num_given_ = num_undecoded_ = 0;
     end_s_ = 0;
     first_pts_.reset();
-    all_sent_ = broke_off_ = last_is_partial_ = told_interlaced_ = false;
+    all_sent_ = broke_off_ = last_is_partial_ = warned_interlaced_ = false;
     warnings_.clear();
     return open_decoder();
   }
@@ -185,10 +185,10 @@ class VideoFile : public FrameSource {
     const AVFrame& frame = *decoded_;
     if (num_given_ == 0) look_at_first(frame);
     const bool has_fields = is_interlaced(frame);
-    if (has_fields && !told_interlaced_) {
+    if (has_fields && !warned_interlaced_) {
       warnings_.push_back(fmt::format("{}: interlaced; one field of each picture is used", name_));
     }
-    told_interlaced_ = told_interlaced_ || has_fields;
+    warned_interlaced_ = warned_interlaced_ || has_fields;
     Result<cv::Mat> converted = converter_.convert(frame);
     if (!converted) return error("{}: {}", name_, converted.error().message);
     cv::Mat& stored = *converted;
@@ -208,7 +208,8 @@ class VideoFile : public FrameSource {
     if (!first_pts_) fps_ = ratio_of(decoder_->framerate);  // the container's is made up then
     if (!(fps_ > 0 && fps_ <= 1000)) fps_ = 0;
     if (!first_pts_ && fps_ > 0) {
-      warnings_.push_back(fmt::format("{}: carries no times; {:.3f} frames a second, as its coding says", name_, fps_));
+      warnings_.push_back(
+          fmt::format("{}: carries no times; {:.3f} frames a second, according to its encoding", name_, fps_));
     }
 
     focal_mm35_.reset();
@@ -229,8 +230,8 @@ class VideoFile : public FrameSource {
       warnings_.push_back(fmt::format("{}: pixels {:.3f} times as wide as high, made square", name_, pixel_aspect_));
     }
     if (const std::optional<HdrTransfer> hdr = hdr_transfer_of(frame)) {
-      warnings_.push_back(fmt::format("{}: HDR ({}), taken as a screen of standard range shows it", name_,
-                                      *hdr == HdrTransfer::kHlg ? "HLG" : "PQ"));
+      warnings_.push_back(
+          fmt::format("{}: HDR ({}), converted to standard range", name_, *hdr == HdrTransfer::kHlg ? "HLG" : "PQ"));
     }
   }
 
@@ -240,7 +241,7 @@ class VideoFile : public FrameSource {
     if (const std::optional<Turn> turn = turn_of_matrix(matrix)) {
       turn_ = *turn;
     } else {
-      warnings_.push_back(fmt::format("{}: turned by {:.0f} degrees, which is no quarter turn; taken as it is stored",
+      warnings_.push_back(fmt::format("{}: turned by {:.0f} degrees, which is not a quarter turn; used as stored",
                                       name_, -av_display_rotation_get(matrix.data())));
     }
   }
@@ -263,11 +264,11 @@ class VideoFile : public FrameSource {
   // Pictures and sound end before the file says, by more than rounding may explain.
   [[nodiscard]] bool ends_early() const {
     if (input_->duration <= 0 || input_->duration_estimation_method == AVFMT_DURATION_FROM_BITRATE) return false;
-    const double told_s = static_cast<double>(input_->duration) / AV_TIME_BASE;
+    const double declared_s = static_cast<double>(input_->duration) / AV_TIME_BASE;
     const double start_s =
         input_->start_time == AV_NOPTS_VALUE ? 0 : static_cast<double>(input_->start_time) / AV_TIME_BASE;
     const double frame_s = fps_ > 0 ? 1 / fps_ : 0;
-    return told_s - (end_s_ - std::min(start_s, 0.0)) > std::max(3 * frame_s, 0.01 * told_s);
+    return declared_s - (end_s_ - std::min(start_s, 0.0)) > std::max(3 * frame_s, 0.01 * declared_s);
   }
 
   std::string name_;
@@ -286,7 +287,7 @@ class VideoFile : public FrameSource {
   std::optional<double> focal_mm35_;
   std::optional<int64_t> first_pts_;
   int64_t num_given_ = 0, num_undecoded_ = 0;
-  bool all_sent_ = false, broke_off_ = false, last_is_partial_ = false, told_interlaced_ = false;
+  bool all_sent_ = false, broke_off_ = false, last_is_partial_ = false, warned_interlaced_ = false;
   std::vector<std::string> warnings_;
 };
 

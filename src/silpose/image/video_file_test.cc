@@ -20,7 +20,7 @@ using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// Four corners to tell turns by: red top left, green top right, blue bottom left, dark bottom right.
+// Four corners that identify rotations: red top left, green top right, blue bottom left, dark bottom right.
 ByteImage corners(int width, int height) {
   ByteImage image(width, height, 3, 30);
   for (int y = 0; y < height; ++y) {
@@ -95,7 +95,7 @@ TEST_F(VideoFileTest, TurnedPicturesComeUpright) {
   }
 }
 
-TEST_F(VideoFileTest, OtherTurnsAreTold) {
+TEST_F(VideoFileTest, OtherTurnsAreReported) {
   const int32_t half = kOne / 2;
   Video video =
       open_video(write("aslant.mp4", {.display_matrix = {{half, half, 0, -half, half, 0, 0, 0, kLast}}})).value();

@@ -248,7 +248,7 @@ TEST_F(VideoTest, BadInputPrintsNothing) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-// Moves an MP4's index to its front, so that the file can be cut and still tells how many frames it should have.
+// Moves an MP4's index to its front, so that the file can be cut and still states how many frames it should have.
 void move_index_to_front(const std::string& path) {
   std::ifstream stream(path, std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(stream)), {});

@@ -1,4 +1,4 @@
-// CoverageDifference: how much a drawn body covers of each cell, less what an observation covers, blurred, with its
+// CoverageDifference: how much a rendered body covers of each cell, minus what an observation covers, blurred, with its
 // derivative. Only cells that the body or the observation touch are worked on, and rows of the Jacobian exist only for
 // cells that hold an end.
 // Threads: an object belongs to one thread.
@@ -20,7 +20,7 @@ namespace silpose {
 // D = w (C_model - C_observed) on the cells, K = G * G the blur applied twice, sigma one cell.
 class CoverageDifference {
  public:
-  // Forgets everything. `picture_width` in pixels: what lies beyond covers nothing.
+  // Forgets everything. `picture_width` in pixels: what is outside covers nothing.
   void start(const CoverageEvidence::Raster& raster, int picture_width, int rows_per_cell);
 
   // Adds what the model covers, once: the ends of its spans on sampled rows, rows_per_cell to a cell.

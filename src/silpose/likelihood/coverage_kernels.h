@@ -1,5 +1,5 @@
-// The cells of CoverageDifference, for whatever vector registers the machine has (chosen at run time). Numbers beyond
-// what is asked for may be written where a size is rounded up to AlignedFloats::kLanes. Threads: pure functions.
+// The cells of CoverageDifference, for the machine's vector registers (chosen at run time). More numbers than requested
+// may be written where a size is rounded up to AlignedFloats::kLanes. Threads: pure functions.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ struct CellBox {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-// Cells of a picture, and where what is known of them lies.
+// Cells of a picture, and the layout of arrays over them.
 struct CellGrid {
   float picture_width = 0;  // pixels
   float cells_per_pixel = 1, cells_per_row = 1;

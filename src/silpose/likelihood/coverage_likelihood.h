@@ -1,6 +1,7 @@
 // CoverageLikelihood: a silhouette likelihood that has a derivative. Model and observation are compared by how much of
-// each cell of a grid they cover, after a blur as wide as a cell: the wider, the further off a pose may be and still be
-// pulled the right way. No correspondences are needed, and what the model lacks pulls as much as what it has too much.
+// each cell of a grid they cover, after a blur as wide as a cell: the wider the blur, the further off a pose may be and
+// still be pulled the right way. No correspondences are needed, and missing model area pulls as much as excess model
+// area.
 //
 //   E(pose) = sum over cameras of trust / noise * 2 sqrt(pi) sigma c^2 sum_cells (G_sigma * w (C_model - C_observed))^2
 //
@@ -9,8 +10,8 @@
 // length along the outline (px^3) and E counts independent errors: -2 log-likelihood.
 // The derivative is exact for the sampled rows: each end of a span moves by dx = J_x - (dx/dy) J_y of the surface point
 // there. Blurring is done once and on both sides: G * G is one kernel, wanted only at the cells that hold an end.
-// Where a network found keypoints, their cost (keypoint_term.h) is added to E, so that whatever fits, ranks or weighs
-// poses by E goes by both kinds of evidence.
+// Where a network found keypoints, their cost (keypoint_term.h) is added to E, so that fitting, ranking and weighing
+// poses by E use both kinds of evidence.
 // Based on: Gauss-Newton on smooth image differences (references.bib: nocedal2006).
 // Threads: constant after construction; one Scratch per thread.
 #pragma once
@@ -49,7 +50,7 @@ struct CoverageEvidence {
     [[nodiscard]] size_t at(int x, int y) const { return static_cast<size_t>(x) * stride() + static_cast<size_t>(y); }
   };
   struct View {
-    double trust = 0;                               // 0: this camera has no say
+    double trust = 0;                               // 0: this camera is ignored
     double pixel_unit = 1;                          // pixels that one pixel of a subject of kSubjectHeight is worth
     double outline_length = 0;                      // pixels, of the observed mask
     std::array<Raster, kBlurSigma.size()> rasters;  // by Blur
@@ -57,17 +58,17 @@ struct CoverageEvidence {
   };
   std::vector<View> views;    // [C]
   std::vector<double> noise;  // [C] outline variance times correlation length, px^3; may be set by the caller
-  bool silhouettes = true;    // whether these count
+  bool silhouettes = true;    // whether they are used
 
   // Sets the noise of the cameras that have one, in units of pixel_unit^3 (as estimate_noise() gives it). [C], or
   // empty.
   void set_noise(std::span<const double> relative);
   [[nodiscard]] double relative_noise(size_t camera_idx) const;
 
-  // The first camera that has a say; nothing where none has.
+  // The first camera that is used; nothing where none is.
   [[nodiscard]] std::optional<size_t> first_seen() const;
 
-  // Whether any camera's directions in space count.
+  // Whether any camera's directions in space are used.
   [[nodiscard]] bool has_directions() const;
   // Cost of the keypoints alone. `skeleton` is that of the body, or of one made stretchable.
   [[nodiscard]] double keypoint_cost(const Skeleton& skeleton, std::span<const double> pose) const;
@@ -92,19 +93,19 @@ class CoverageLikelihood {
   CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras, int rows_per_cell = 2);
   ~CoverageLikelihood();
 
-  // What exact masks deserve, in units of pixel_unit^3: the default of CoverageEvidence::noise.
+  // The noise of exact masks, in units of pixel_unit^3: the default of CoverageEvidence::noise.
   static constexpr double kExactNoise = 10;
   // Outlines are never trusted further than this, however well a body may fit: its skin has its own errors.
   static constexpr double kLeastNoise = 1;
 
-  // Shapes: one observation a camera. A camera whose observation found nothing gets no say. Only blurs from
+  // Shapes: one observation a camera. A camera whose observation found nothing is ignored. Only blurs from
   // `narrowest` to `widest` are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit
   // its camera.
   [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32,
                                          Blur narrowest = Blur::k2,
                                          EvidenceKind kind = EvidenceKind::kSilhouette) const;
 
-  // What evaluations work in; one a thread. Given back to its likelihood in the end, for the next one: cheap to make.
+  // Working memory of evaluations, one per thread. It returns to its likelihood at the end, for reuse: cheap to make.
   class Scratch {
    public:
     explicit Scratch(const CoverageLikelihood& likelihood);
@@ -128,15 +129,15 @@ class CoverageLikelihood {
   std::vector<double> residuals(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,
                                 Scratch& scratch) const;
 
-  // How noisy the outlines prove to be, seen from a pose that fits: variance times correlation length, in units of
+  // The noise of the outlines, estimated at a pose that fits: variance times correlation length, in units of
   // pixel_unit^3, never below kLeastNoise. White noise of variance s^2 and correlation length l leaves
-  // s^2 l L / (2 sqrt(pi) sigma) after a blur wider than l, of which a fit explains some. A camera without a say: 0.
+  // s^2 l L / (2 sqrt(pi) sigma) after a blur wider than l, of which a fit explains some. A camera that is ignored: 0.
   // [C]
   std::vector<double> estimate_noise(const CoverageEvidence& evidence, std::span<const double> pose,
                                      Scratch& scratch) const;
 
-  // The least that one of several poses leaves, camera by camera: the best of them says how good a fit can be. Shapes:
-  // [K] of [D] -> [C].
+  // The least noise that one of several poses leaves, camera by camera: the best of them shows how good a fit can be.
+  // Shapes: [K] of [D] -> [C].
   std::vector<double> least_noise(const CoverageEvidence& evidence, std::span<const Eigen::VectorXd> poses,
                                   Scratch& scratch) const;
 

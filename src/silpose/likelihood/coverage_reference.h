@@ -1,6 +1,6 @@
-// The plain way to CoverageLikelihood::linearise(): what its fast way is tested, and timed, against. Every triangle is
-// cut with every sampled row, the intervals of a row are united, ends are moved joint by joint, and J' K J is summed
-// over all pairs of cells, in double precision. Threads: a function without state.
+// The plain implementation of CoverageLikelihood::linearise(): the fast one is tested and timed against it. Every
+// triangle is cut with every sampled row, the intervals of a row are united, ends are moved joint by joint, and J' K J
+// is summed over all pairs of cells, in double precision. Threads: a function without state.
 #pragma once
 
 #include <span>

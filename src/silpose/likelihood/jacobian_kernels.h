@@ -1,6 +1,6 @@
-// The Jacobian of CoverageDifference and its products, for whatever vector registers the machine has (chosen at run
-// time). Rows are cells that hold an end, columns come in blocks of kLanes; a cell near a leg has nothing in the
-// block of the arms, so every cell says by a bit a block where it is not zero.
+// The Jacobian of CoverageDifference and its products, for the machine's vector registers (chosen at run time). Rows
+// are cells that hold an end, columns come in blocks of kLanes; a cell near a leg has nothing in the block of the arms,
+// so every cell has one bit per block that is set where it is not zero.
 // Threads: pure functions. REQUIRES everywhere: rows aligned, `stride` a multiple of AlignedFloats::kLanes.
 #pragma once
 

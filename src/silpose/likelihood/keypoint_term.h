@@ -20,8 +20,8 @@
 
 namespace silpose {
 
-// What an observation is compared by. A camera without keypoints has silhouettes alone with kBoth, and nothing at all
-// with kKeypoints.
+// What an observation is compared by. A camera without keypoints contributes only its silhouette with kBoth, and
+// nothing with kKeypoints.
 enum class EvidenceKind { kSilhouette, kKeypoints, kBoth };
 
 struct KeypointWeights {

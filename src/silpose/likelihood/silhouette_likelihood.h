@@ -25,7 +25,7 @@ enum class Comparison {
 enum class Metric {
   kPixelCount,  // pixels: set in one of both only
   kCoverage,    // parts of pixels: |covered by one - covered by the other|, which motion of a tenth of a pixel changes.
-                // On a quarter of the resolution it still tells better where a body is.
+                // At a quarter of the resolution it still locates a body better.
 };
 
 struct LikelihoodOptions {
@@ -45,7 +45,7 @@ struct Evidence {
     Mask observed;                                  // raster; for Metric::kPixelCount
     ByteImage covered;                              // raster, 0 to kFullCoverage; for Metric::kCoverage
     int64_t area = 0;                               // set pixels, or the sum of what is covered
-    double trust = 0;                               // 0: this camera has no say
+    double trust = 0;                               // 0: this camera is ignored
     std::shared_ptr<const KeypointTerm> keypoints;  // null: none
   };
   std::vector<View> views;  // [C]
@@ -56,14 +56,14 @@ class SilhouetteLikelihood {
   // REQUIRES: at least one renderer, all of the same body.
   SilhouetteLikelihood(std::vector<std::shared_ptr<const BatchRenderer>> renderers, LikelihoodOptions options);
 
-  // Shapes: one observation a camera. A camera whose observation found nothing gets no say.
+  // Shapes: one observation a camera. A camera whose observation found nothing is ignored.
   [[nodiscard]] Evidence prepare(std::span<const Observation> observations) const;
 
-  // Distance in [0, 1] of each state, mean over the cameras that have a say: what differs over the sum of both areas
-  // (0: equal, 1: disjoint). Shapes: states [N, D' >= D], only the first D columns are read; out [N].
+  // Distance in [0, 1] of each state, mean over the cameras that are used: what differs over the sum of both areas (0
+  // if equal, 1 if disjoint). Shapes: states [N, D' >= D], only the first D columns are read; out [N].
   void distances(const Evidence& evidence, const StateBatch& states, std::span<double> out) const;
 
-  // -sharpness * trust * distance, summed over cameras, and what keypoints say besides. Shapes: as distances().
+  // -sharpness * trust * distance, summed over cameras, plus the term of keypoints. Shapes: as distances().
   void log_likelihood(const Evidence& evidence, const StateBatch& states, std::span<double> out) const;
 
   // log-likelihood and its derivative with respect to the pose, by central differences over `steps` [D].

@@ -1,5 +1,5 @@
-// CommonPoses: a proposal that looks at nothing: what people are most often seen doing, facing each of eight
-// directions. For starting a track.
+// CommonPoses: a proposal that ignores the observation: the poses in which people are most often seen, facing each of
+// eight directions. For starting a track.
 // Source: cormier2019 sect. 2.4.1 (starting from known common poses).
 // Threads: as Proposal.
 #pragma once
@@ -14,11 +14,11 @@ namespace silpose {
 
 class CommonPoses final : public Proposal {
  public:
-  // Poses are told by the DOF names of the human; DOF that a skeleton lacks are left out, poses that then are equal are
-  // given once, and without root_ry there is one heading.
+  // Poses are defined by the DOF names of the human; DOF that a skeleton lacks are left out, poses that then are equal
+  // are given once, and without root_ry there is one heading.
   explicit CommonPoses(const Skeleton& skeleton);
 
-  // The root's translation is 0. Asked for fewer than there are: a random choice without repetition.
+  // The root's translation is 0. If fewer are requested than exist: a random choice without repetition.
   [[nodiscard]] StateBatch propose(const Observation& observation, int num_candidates, Rng& rng) const override;
 
   // All poses [K, D], heading by heading within each named pose; and each row's name.

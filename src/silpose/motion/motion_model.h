@@ -1,9 +1,9 @@
 // MotionModel: how particles move between frames.
 //
-// Contract: a state has D' >= D columns, of which the first D are a pose. propagate() moves every state on by dt_s with
-// noise; diffuse() adds noise of given deviations and moves nothing on, as annealing wants between layers. After
-// either, poses are within the skeleton's limits and periodic DOF are wrapped. Particle i of a call draws from the
-// stream (seed, stream, i) alone, so results do not depend on threads.
+// Contract: a state has D' >= D columns, of which the first D are a pose. propagate() moves every state forward by dt_s
+// with noise; diffuse() adds noise of given deviations and moves nothing forward, as annealing needs between layers.
+// After either, poses are within the skeleton's limits and periodic DOF are wrapped. Particle i of a call draws from
+// the stream (seed, stream, i) alone, so results do not depend on threads.
 //
 //   diffusion               x + N(0, S dt)                                                   D' = D
 //   first-order-augmented   [x, v]: x moves by v; an acceleration that is white noise changes both   D' = 2 D

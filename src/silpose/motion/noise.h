@@ -1,5 +1,5 @@
-// How far degrees of freedom stray: in one frame at 30 per second, from constant velocity, and from rest. Tables by DOF
-// name for people who walk and gesture; for the DOF of other skeletons a rule from their range.
+// How far degrees of freedom deviate: in one frame at 30 per second, from constant velocity, and from rest. Tables by
+// DOF name for people who walk and gesture; for the DOF of other skeletons a rule from their range.
 // Threads: a function without state.
 #pragma once
 
@@ -17,8 +17,8 @@ inline constexpr double kTypicalSigmaDeg = 4;         // the table's own deviati
 // Errors: throws std::invalid_argument unless sigma_deg is positive and finite.
 [[nodiscard]] std::vector<double> noise_deviation(const Skeleton& skeleton, double sigma_deg = kTypicalSigmaDeg);
 
-// Deviation [D] of the change of velocity over kNoiseInterval_s, times that interval: by how far a DOF ends up from
-// where constant velocity would take it. Radians and metres.
+// Deviation [D] of the change of velocity over kNoiseInterval_s, times that interval: how far a DOF ends up from where
+// constant velocity would take it. Radians and metres.
 [[nodiscard]] std::vector<double> acceleration_deviation(const Skeleton& skeleton);
 
 // Deviation [D] of poses from all joints at zero, radians; 0 for what may be anywhere: translations, headings, lengths,

@@ -1,4 +1,4 @@
-// Proposal: candidate poses for what is seen, from somewhere else than the last frame: a list, a network, a database.
+// Proposal: candidate poses for an observation, from another source than the last frame: a list, a network, a database.
 // The tracker weighs candidates like any particle, so a proposal may be wrong.
 //
 // Contract: the candidates are whole poses within the skeleton's limits. Where the root is need not be right: the
@@ -17,7 +17,7 @@ class Proposal {
  public:
   virtual ~Proposal() = default;
 
-  // Poses [K, D], K at most num_candidates; 0 asks for all that the proposal has, or finds worth trying.
+  // Poses [K, D], K at most num_candidates; 0 requests all that the proposal has, or finds worth trying.
   // REQUIRES: num_candidates >= 0.
   [[nodiscard]] virtual StateBatch propose(const Observation& observation, int num_candidates, Rng& rng) const = 0;
 };

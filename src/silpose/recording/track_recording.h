@@ -1,5 +1,5 @@
-// TrackRecording: what a tracker said of a clip, frame by frame, as plain values, and the tables that exchange writes.
-// The recording is the result: files and reports are made of it, never of the tracker.
+// TrackRecording: what a tracker reported about a clip, frame by frame, as plain values, and the tables that exchange
+// writes. The recording is the result: files and reports are made from it, never from the tracker.
 // Threads: values and pure functions.
 #pragma once
 
@@ -24,13 +24,13 @@ struct RecordedStep {
   std::vector<double> pose, mode, spread;        // [D] metres, radians; empty while waiting
   std::vector<Eigen::Vector3d> landmark_spread;  // [J + E] metres; empty while waiting
   double visual_accuracy = 0, effective_sample_size = 0;
-  std::vector<double> trust;  // [C] how far each camera's mask could be relied on, 0 to 1; NaN where nothing is told
+  std::vector<double> trust;  // [C] how far each camera's mask could be relied on, 0 to 1; NaN where not reported
 };
 
 struct TrackRecording {
   std::string skeleton;              // its name
   std::vector<RecordedStep> steps;   // [T] in time order
-  std::vector<std::string> cameras;  // [C] by name, of those that tell of their trust
+  std::vector<std::string> cameras;  // [C] by name, of those that report their trust
 };
 
 // "waiting", "initialised", "tracked", "coasted".

@@ -137,7 +137,7 @@ TEST_F(BatchRendererTest, UnseenAndBrokenPosesCountNothing) {
   std::vector<double> poses(3 * num_dofs_, 0.0);
   poses[2] = 20;  // root_tz: behind the camera
   poses[num_dofs_] = std::numeric_limits<double>::quiet_NaN();
-  poses[2 * num_dofs_] = 50;  // root_tx: beside the picture
+  poses[2 * num_dofs_] = 50;  // root_tx: outside the picture
   const Mask observed(32, 32);
   std::vector<Counts> counts(3, {.model = 7, .both = 7});
   const BatchRenderer renderer(body_, camera_);

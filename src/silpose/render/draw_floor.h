@@ -1,6 +1,6 @@
-// The floor y = 0 drawn into pictures, and where a body's feet are on it: whether the calibration fits what is seen,
-// and the pose fits the floor. 8-bit B, G, R, as in draw_overlay.h. Lines follow the lens and end at the camera's
-// plane. Threads: pure functions.
+// The floor y = 0 drawn into pictures, and where a body's feet are on it: to check that the calibration fits the
+// picture, and the pose fits the floor. 8-bit B, G, R, as in draw_overlay.h. Lines follow the lens and end at the
+// camera's plane. Threads: pure functions.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +14,7 @@
 
 namespace silpose {
 
-// A grid on the floor: squares of 1 m whose lines lie at whole metres, 6 m by 6 m round `middle` (x and z, world), and
+// A grid on the floor: squares of 1 m whose lines lie at whole metres, 6 m by 6 m around `middle` (x and z, world), and
 // the world's axes, 1 m long from the origin: x red, y green, z blue. What `in_front` covers (empty, or of the
 // picture's size) is left alone: a body on the floor hides what lies behind it. REQUIRES: picture of 3 channels, of the
 // camera's size.

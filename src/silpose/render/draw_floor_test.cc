@@ -15,7 +15,7 @@ constexpr uint8_t kGrey = 128;
 
 class DrawFloorTest : public testing::Test {
  protected:
-  // Whether anything was drawn at a pixel or beside it.
+  // Whether anything was drawn at a pixel or next to it.
   [[nodiscard]] bool is_drawn(const Eigen::Vector2d& pixel) const {
     for (int y = int(pixel.y()) - 1; y <= int(pixel.y()) + 1; ++y) {
       for (int x = int(pixel.x()) - 1; x <= int(pixel.x()) + 1; ++x) {

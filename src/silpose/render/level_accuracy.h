@@ -1,4 +1,4 @@
-// How much the silhouettes of a level of detail share with the whole body's.
+// How much the silhouettes of a level of detail overlap with the whole body's.
 // Threads: pure function; runs on all cores (base/parallel.h), the result does not depend on how many.
 #pragma once
 

@@ -1,5 +1,5 @@
-// OutlineEdges: which edges of a projected mesh lie on its outline, directed so that the side they bound is on the same
-// hand of all of them. By Highway, built for every instruction set and chosen at run time; the same for all of them.
+// OutlineEdges: which edges of a projected mesh lie on its outline, directed so that the interior is on the same side
+// of all of them. By Highway, built for every instruction set and chosen at run time; the same for all of them.
 // An edge lies on the outline when its two faces are turned to different sides of the camera, or when it has one face
 // only. Exact: on the grid, which side a face is turned to is decided in integers.
 // Threads: one thread per object.
@@ -19,8 +19,8 @@ class OutlineEdges {
   explicit OutlineEdges(const EdgeTopology& topology);  // keeps a reference
 
   // Finds the outline of the mesh whose vertices are projected to `points` [V, and more that only `cut_faces` name].
-  // Faces with an unseen vertex are left out; `some_unseen` tells whether there is any. What stands for them, the cut
-  // faces, are surfaces of their own: all their edges are of one face.
+  // Faces with an unseen vertex are left out; `some_unseen` is whether there is any. The cut faces, which replace them,
+  // are separate surfaces: all their edges are of one face.
   void find(std::span<const GridPoint> points, bool some_unseen, std::span<const Face> cut_faces = {});
 
   // Edges from[i] to to[i]. Crossing one changes the winding number by the same sign; by two where both faces count.

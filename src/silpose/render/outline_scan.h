@@ -28,8 +28,8 @@ class OutlineScan {
   void scan(std::span<const GridPoint> points, bool some_unseen, int width, int height,
             std::span<const Face> cut_faces = {});
 
-  // What is done with the scanned silhouette: set in a cleared mask of the scan's size, counted against one, or its box
-  // of pixels found; nothing when it has none.
+  // Uses of the scanned silhouette: it is set in a cleared mask of the scan's size, counted against a mask, or its box
+  // of pixels is found; nothing when it has none.
   void draw(Mask& mask) const;
   [[nodiscard]] OutlineRenderer::Counts count(const Mask& observed) const;
   [[nodiscard]] std::optional<PixelBounds> bounds() const;

@@ -1,5 +1,5 @@
-// OutlineSpans: the inside of a mesh's outline on sampled rows, as spans whose ends are exact and know the edge of the
-// mesh that they lie on: what a silhouette's coverage, and its derivative, are made of.
+// OutlineSpans: the inside of a mesh's outline on sampled rows, as spans whose ends are exact and refer to the edge of
+// the mesh that they lie on: a silhouette's coverage, and its derivative, are computed from them.
 // Based on: the non-zero winding rule, as OutlineScan; here in floating point, without rounding to a grid.
 // Threads: one thread per object.
 #pragma once
@@ -19,11 +19,11 @@ class OutlineSpans {
   explicit OutlineSpans(const EdgeTopology& topology);  // keeps a reference
 
   // Scans the mesh whose vertices are projected to `pixels` [V]. Faces with a vertex that is NaN are left out;
-  // `some_unseen` tells whether there may be any.
+  // `some_unseen` is whether there may be any.
   void scan(std::span<const Eigen::Vector2f> pixels, const SampledRows& rows, bool some_unseen);
 
   // The ends of the spans inside, in no particular order, until the next scan(). A row has as many beginnings as ends;
-  // left to right they take turns.
+  // left to right they alternate.
   [[nodiscard]] SpanEnds ends() const {
     return {end_x_.data(), end_side_.data(), end_row_.data(), end_edge_.data(), num_ends_};
   }

@@ -1,5 +1,5 @@
 // PoseProjector: from poses to points on a window's grid: ProjectedSkin's, in its slots, unless some of the body is too
-// near to be seen. That is rare: then the reference's vertices are taken and the faces cut (projected_mesh.h).
+// near to be visible. In that rare case the reference's vertices are used and the faces cut (projected_mesh.h).
 // Threads: constant after construction; one Scratch per thread.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace silpose {
 class PoseProjector {
  public:
   PoseProjector(std::shared_ptr<const BodyModel> body, const PinholeCamera& camera);
-  PoseProjector(const PoseProjector&) = delete;  // the skin refers to what stands beside it
+  PoseProjector(const PoseProjector&) = delete;  // the skin refers to its neighbouring members
   PoseProjector& operator=(const PoseProjector&) = delete;
 
   [[nodiscard]] const BodyModel& body() const { return *body_; }
@@ -27,7 +27,7 @@ class PoseProjector {
    public:
     [[nodiscard]] std::span<const GridPoint> points() const { return projected_.points; }
     [[nodiscard]] bool some_unseen() const { return projected_.some_unseen; }
-    // What stands for faces that cross the near plane.
+    // What replaces faces that cross the near plane.
     [[nodiscard]] std::span<const Face> cut_faces() const {
       return some_unseen() ? std::span<const Face>(cut_.cut_faces) : std::span<const Face>();
     }
@@ -47,7 +47,7 @@ class PoseProjector {
   // Both, for a window that is known beforehand; bounds() mean nothing.
   bool project_to_grid(std::span<const double> pose, const Window& window, Scratch& scratch) const;
 
-  // 1 / depth of all points() after project(); what is unseen means nothing.
+  // 1 / depth of all points() after project(); undefined for unseen points.
   void inverse_depths(const Scratch& scratch, std::vector<float>& inverse_depth) const;
 
  private:

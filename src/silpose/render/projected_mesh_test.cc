@@ -118,7 +118,7 @@ TEST(ProjectedMesh, ThroughABentLensWhatIsCutKeepsToThePicture) {
     wrong += misses(camera, vertices, kOneFace[0], mask);
   }
   EXPECT_GT(pixels, 20000);
-  EXPECT_LE(wrong, pixels / 20);  // straight edges of triangles are bent in truth: some pixels beside each
+  EXPECT_LE(wrong, pixels / 20);  // straight edges of triangles are bent in truth: some pixels next to each
 }
 
 TEST(ProjectedMesh, FacesThatShareAnEdgeLeaveNoGap) {
@@ -166,7 +166,7 @@ TEST(ProjectedMesh, HostileValuesAreDrawnAlike) {
     }
     draw(camera, vertices, faces, i % 2 == 0 ? 1 : 1e5);
   }
-  camera.fx = camera.fy = 1e7;  // a view so narrow that everything else is far beside it
+  camera.fx = camera.fy = 1e7;  // a view so narrow that everything else is far outside
   EXPECT_EQ(draw(camera, {{-1, -1, 1}, {1, -1, 1}, {0, 3, -1}}, kOneFace).count(), 64 * 48);
 }
 

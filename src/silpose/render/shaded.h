@@ -1,6 +1,6 @@
-// Depth images and shaded pictures of a mesh; for looking at and for synthetic video, never for tracking.
-// Depth-buffered triangles, exactly those that silhouette.h draws; smooth Lambert shading by vertex; a shadow on the
-// floor y = 0; edges smoothed by 2x2 samples a pixel.
+// Depth images and shaded pictures of a mesh; for viewing and for synthetic video, never for tracking. Depth-buffered
+// triangles, exactly those that silhouette.h draws; smooth Lambert shading by vertex; a shadow on the floor y = 0;
+// edges smoothed by 2x2 samples a pixel.
 // Threads: pure functions.
 #pragma once
 

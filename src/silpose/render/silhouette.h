@@ -2,7 +2,7 @@
 // (every triangle filled) and the fast one (winding number of the outline only).
 // A pixel is set when its centre lies in some projected triangle (half-open: centres on a left or top edge are inside).
 // Shared rule for both: vertices are rounded to a grid of 1/256 raster pixel first (raster_grid.h). A triangle that
-// crosses the near plane is cut there (projected_mesh.h): drawn are the triangles of `faces` that lie before it, and
+// crosses the near plane is cut there (projected_mesh.h): drawn are the triangles of `faces` that lie beyond it, and
 // those of `cut_faces`; one with a vertex that is NaN is left out.
 // Threads: OutlineRenderer's scratch belongs to one thread; the rest are pure functions.
 #pragma once
@@ -32,8 +32,7 @@ struct EdgeTopology {
   std::vector<Face> faces;                        // [F]
   std::vector<std::array<int32_t, 3>> neighbour;  // [F] across edges (0,1), (1,2), (2,0)
 
-  // Every edge once: from `vertices[0]` to `vertices[1]` along faces[0], the other way along faces[1]; F stands for
-  // none.
+  // Every edge once: from `vertices[0]` to `vertices[1]` along faces[0], the other way along faces[1]; F means none.
   struct Edges {
     std::vector<std::array<uint32_t, 2>> vertices, faces;
   } edges;

@@ -1,8 +1,7 @@
-// StripOrder: a mesh's faces as triangle strips, and its edges as pairs of strip positions in long regular runs: what
-// lets the outline be found by vector instructions, without looking anything up face by face.
-// Position p stands for the triangle of the strip vertices p, p + 1, p + 2; two positions between strips stand for
-// none. Based on: triangle strips grown greedily from the faces with the fewest neighbours left (references.bib:
-// evans1996). Threads: a value; made once per mesh.
+// StripOrder: a mesh's faces as triangle strips, and its edges as pairs of strip positions in long regular runs, so
+// that vector instructions can find the outline without a lookup per face. Position p is the triangle of the strip
+// vertices p, p + 1, p + 2; two positions between strips are no triangle. Based on: triangle strips grown greedily from
+// the faces with the fewest neighbours left (references.bib: evans1996). Threads: a value; made once per mesh.
 #pragma once
 
 #include <array>
@@ -29,7 +28,7 @@ struct StripOrder {
   static constexpr std::array<std::array<uint8_t, 2>, 3> kSide = {{{0, 1}, {1, 2}, {2, 0}}};
 
   // Edges between positions first + b and other + b, for the bits b that are set in `mask`. The two faces are turned to
-  // the same side when bit b of `expected` tells whether their strip orders wind differently on the screen.
+  // the same side when bit b of `expected` says whether their strip orders wind differently on the screen.
   struct Run {
     uint64_t mask = 0, expected = 0;
     uint32_t first = 0, other = 0;  // first is a multiple of 8

@@ -1,4 +1,4 @@
-// StripView: what kernels see of a StripOrder: nothing but pointers, so that no code of a library is compiled for one
+// StripView: a kernel's view of a StripOrder: nothing but pointers, so that no code of a library is compiled for one
 // instruction set only. Threads: a value; the order must outlive it.
 #pragma once
 

@@ -1,5 +1,6 @@
-// ViewVolume: what a camera may see, as half-spaces: before the near plane, and within the picture and some room around
-// it (far outside of it a distortion polynomial folds back, and would put things where there are none).
+// ViewVolume: what a camera may see, as half-spaces: beyond the near plane, and within the picture and some margin
+// around it (far outside of it a distortion polynomial folds back, and would project things into the picture that are
+// not there).
 // Threads: immutable.
 #pragma once
 
@@ -11,7 +12,7 @@
 namespace silpose {
 
 struct ViewVolume {
-  // `margin`: room on each side, as a part of the picture's view.
+  // `margin`: on each side, as a fraction of the picture's view.
   ViewVolume(const PinholeCamera& camera, double margin);
   std::array<Eigen::Vector4d, 5> half_spaces;  // of camera coordinates: inside is n . x + d >= 0; the near plane first
 };

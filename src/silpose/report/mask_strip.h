@@ -1,5 +1,5 @@
 // MaskStrip: a few small pictures of a clip with the mask's outline on them, evenly over the clip however long it is.
-// Pictures are cut out around the mask: what matters is whether its edge, hands and feet are right.
+// Pictures are cropped around the mask, to show whether its edge, hands and feet are right.
 // Threads: one thread per strip.
 #pragma once
 

@@ -1,5 +1,5 @@
 // The page that make_report fills: page/page.html with its style and scripts inside, made into C++ by page/embed.cmake.
-// Four places are left to be filled in: @TITLE@ and @HEADING@ (the page's title), @VIDEO@ (the source of the video
+// Four placeholders are to be filled in: @TITLE@ and @HEADING@ (the page's title), @VIDEO@ (the source of the video
 // element) and @DATA@ (report_data.h).
 #pragma once
 

@@ -1,6 +1,6 @@
-// The numbers of a report's page as JSON. Series over time are whole multiples of a step, told as differences, so that
-// ten minutes stay small: {"step": s, "deltas": [null, 3005, -2]} is [unknown, 3005 s, 3003 s]. Null is a gap, which
-// the next difference leaps over; a value is off by half a step at most. NaN is never written. Threads: a pure
+// The numbers of a report's page as JSON. Series over time are whole multiples of a step, stored as differences, so
+// that ten minutes stay small: {"step": s, "deltas": [null, 3005, -2]} is [unknown, 3005 s, 3003 s]. Null is a gap,
+// which the next difference skips; a value is off by half a step at most. NaN is never written. Threads: a pure
 // function.
 #pragma once
 

@@ -46,7 +46,7 @@ Result<std::string> video_address(const ReportInput& input) {
   return "data:video/mp4;base64," + base64(*bytes);
 }
 
-// Inside a script element no "<" may stand that HTML could take for markup.
+// A script element must not contain a "<" that HTML could mistake for markup.
 std::string escape_script(std::string_view json) {
   std::string out;
   out.reserve(json.size());

@@ -1,7 +1,7 @@
-// The report: one HTML file that opens without network: the overlay video and a skeleton to be turned, how well the
-// silhouettes agree and where they do not, every angle's curve with its claimed 90 % interval, how the masks were made,
-// where the time went, and what to be wary of. Made of a recording and run facts alone. Drawn by a small script of our
-// own inside the page (page/). Threads: functions without state.
+// The report: one HTML file that opens without network: the overlay video and a skeleton that can be rotated, how well
+// the silhouettes agree and where they do not, every angle's curve with its claimed 90 % interval, how the masks were
+// made, where the time went, and warnings. Made from a recording and run facts alone. Drawn by a small script inside
+// the page (page/). Threads: functions without state.
 #pragma once
 
 #include <filesystem>

@@ -12,7 +12,7 @@ namespace silpose {
 namespace {
 
 // Grey levels. Compressed video repeats blocks of an empty scene unchanged, so a deviation of 0 over time does not mean
-// no noise: where somebody moves, blocks are coded anew, and edges of the scene come out a little different.
+// no noise: where a person moves, blocks are coded again, and edges of the scene differ a little.
 constexpr std::array<float, 3> kNoiseFloor = {3.5f, 2.0f, 2.0f};
 constexpr double kNoiseOfSlope = 0.2, kPlateNoiseOfSlope = 0.4;
 // A plate is encoded and exposed by itself.
@@ -113,7 +113,7 @@ ByteImage convert(const ByteImage& image, int conversion) {
   return converted;
 }
 
-// `share` of what the picture changes from pixel to pixel: so much of a shift is taken for noise.
+// `share` of what the picture changes from pixel to pixel: that much of a shift is treated as noise.
 cv::Mat slope_of(const ByteImage& image, double share) {
   const cv::Mat view(image.height(), image.width(), CV_8UC3, const_cast<uint8_t*>(image.pixels().data()));
   cv::Mat slope_x, slope_y;
@@ -148,7 +148,7 @@ Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t>
       break;
     }
     if (done++ % stride == 0) samples.images.push_back(to_luma_chroma((*frame)->images[0]));
-    if (static_cast<int64_t>(samples.images.size()) > limit) {  // longer than was told: keep every other one
+    if (static_cast<int64_t>(samples.images.size()) > limit) {  // longer than was announced: keep every other one
       for (size_t i = 0; 2 * i < samples.images.size(); ++i) samples.images[i] = std::move(samples.images[2 * i]);
       samples.images.resize((samples.images.size() + 1) / 2);
       stride *= 2;
@@ -181,8 +181,8 @@ BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSa
     ByteImage ignored(plate.width(), plate.height(), 3);
     median_and_deviation(samples.images, ignored, model.noise);
   }
-  // Where the subject comes and goes the deviation is not noise: not more than a few floors of it is believed. A plate
-  // is its own exposure and may lie a fraction of a pixel off, hence the slope of the picture.
+  // Where the subject comes and goes the deviation is not noise: it is limited to a few floors. A plate is its own
+  // exposure and may lie a fraction of a pixel off, hence the slope of the picture.
   cv::Mat noise(plate.height(), plate.width(), CV_32FC3, model.noise.pixels().data());
   const cv::Mat slope = slope_of(model.median, kPlateNoiseOfSlope);
   noise = cv::min(noise, 3 * cv::Scalar(kPlateFloor[0], kPlateFloor[1], kPlateFloor[2])) + slope;

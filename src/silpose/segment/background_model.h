@@ -1,6 +1,6 @@
-// BackgroundModel: what a static camera sees behind the subject, and how far it strays by itself: per pixel and channel
-// a median and a noise scale. Channels are luma and two colour differences: video noise and shadows live in the luma,
-// the colour differences are steadier.
+// BackgroundModel: what a static camera sees behind the subject, and how much it varies by itself: per pixel and
+// channel a median and a noise scale. Channels are luma and two colour differences: video noise and shadows live in the
+// luma, the colour differences are more stable.
 // Based on: the temporal median with the median absolute deviation as scale (references.bib: rousseeuw1993).
 // Threads: a value; the functions may be called from any thread.
 #pragma once
@@ -39,14 +39,14 @@ Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t>
 // From samples in which every pixel shows the background more than half of the time. REQUIRES: at least one sample.
 BackgroundModel learn_background(const BackgroundSamples& samples);
 
-// From a picture [H, W, 3] (B, G, R) of the empty scene; how the pixels stray comes from samples of the clip, whoever
-// stands in them (none: a default). REQUIRES: equal sizes.
+// From a picture [H, W, 3] (B, G, R) of the empty scene; the pixels' noise comes from samples of the clip, which may
+// show people (none: a default). REQUIRES: equal sizes.
 BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSamples& samples = {});
 
-// Signs that a subject who stays put has become background, as fractions of the picture or of the region.
+// Signs that a subject who does not move has become background, as fractions of the picture or of the region.
 struct BackgroundDoubt {
-  double half_covered = 0;  // something else than the background is there in a quarter of the samples or more
-  double ever_covered = 0;  // ... in any sample
+  double half_covered = 0;  // a quarter of the samples or more differ from the background there
+  double ever_covered = 0;  // any sample does
 };
 BackgroundDoubt doubt_background(const BackgroundModel& model, const BackgroundSamples& samples,
                                  const std::optional<Box>& region = {});

@@ -77,7 +77,7 @@ TEST(LearnBackground, DoesNotDependOnThreads) {
   EXPECT_EQ(mask_one, mask_many);
 }
 
-TEST(DoubtBackground, TellsAWalkFromAStay) {
+TEST(DoubtBackground, DistinguishesAWalkFromAStay) {
   const TestScene scene;
   const BackgroundSamples passing = walk(scene);
   const BackgroundDoubt none = doubt_background(learn_background(passing), passing);

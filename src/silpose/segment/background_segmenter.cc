@@ -32,7 +32,7 @@ class BackgroundSegmenter : public BlobSegmenter {
     const Mask blob = subject_of(look->found, blob_);
     doubt_changes(look->confidence, look->found, blob);
     const int grow_px = options_.clean_up.grow_px;
-    // Colour alone must not decide the edge of what depth had a say in.
+    // Colour alone must not decide the edge where depth was used.
     if (options_.depth) return judge(grow(blob, grow_px), std::move(look->confidence));
     const EdgeMatte matte = refine_edge(blob, look->luma_chroma, finder_.model().median);
     lower_confidence(look->confidence, matte.confidence);
@@ -114,7 +114,7 @@ class OnlineSegmenter : public BlobSegmenter {
 
  private:
   static constexpr int kHistory = 500;    // pictures until the oldest is forgotten
-  static constexpr int kNumLearned = 10;  // pictures before anything is believed
+  static constexpr int kNumLearned = 10;  // pictures before anything is trusted
   BackgroundSegmenterOptions options_;
   cv::Ptr<cv::BackgroundSubtractor> subtractor_;
   cv::Size size_;

@@ -13,7 +13,7 @@
 
 namespace silpose {
 
-// Depth that joins the colours.
+// Depth that is used together with the colours.
 struct JoinedDepth {
   DepthFiles files;
   DepthImage background;  // learn_depth_background()
@@ -31,8 +31,8 @@ std::unique_ptr<Segmenter> make_background_segmenter(BackgroundModel model, Back
 
 enum class OnlineMixture { kMog2, kKnn };
 
-// Mixtures of Gaussians or nearest neighbours per pixel that learn on; shadows count as background. Knows nothing in
-// its first pictures: trust is 0 there.
+// Mixtures of Gaussians or nearest neighbours per pixel that keep learning; shadows count as background. Has no model
+// in its first pictures: trust is 0 there.
 std::unique_ptr<Segmenter> make_online_segmenter(OnlineMixture mixture, BackgroundSegmenterOptions options);
 
 }  // namespace silpose

@@ -1,4 +1,5 @@
-// BlobSegmenter: what segmenters share that find all foreground first and then have to tell which of it is the subject.
+// BlobSegmenter: the common part of segmenters that find all foreground first and then decide which of it is the
+// subject.
 // Threads: one thread per segmenter.
 #pragma once
 

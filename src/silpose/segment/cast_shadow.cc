@@ -27,7 +27,7 @@ constexpr int kLeastOfRow = 3;          // pixels that make a row the subject's
 
 // What a picture looks like before its background, within `part` of it.
 struct Comparison {
-  cv::Mat factor;  // [h, w] of the luma, which noise and coding have less of a say in over 3x3 pixels
+  cv::Mat factor;  // [h, w] of the luma, which noise and coding affect less over 3x3 pixels
   cv::Mat tint;    // [h, w]
   cv::Mat spread;  // [h, w] squared deviation of the factor around
 };

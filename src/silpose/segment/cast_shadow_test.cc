@@ -41,7 +41,7 @@ class FindCastShadow : public testing::Test {
   BackgroundModel model;
 };
 
-TEST_F(FindCastShadow, TellsTheShadowFromTheSubject) {
+TEST_F(FindCastShadow, DistinguishesTheShadowFromTheSubject) {
   for (const double darker : {0.25, 0.35, 0.5}) {
     scene.shadow = darker;
     const ByteImage picture = to_luma_chroma(scene.picture(50, 7));
@@ -56,7 +56,7 @@ TEST_F(FindCastShadow, TellsTheShadowFromTheSubject) {
 TEST_F(FindCastShadow, OneLightHasOneFactor) {
   scene.shadow = 0.3;
   ByteImage picture = to_luma_chroma(scene.picture(50, 7));
-  // A dark trouser leg of the background's hue, beside the shadow.
+  // A dark trouser leg of the background's hue, next to the shadow.
   for (int y = 70; y < 90; ++y) {
     for (int x = 104; x < 112; ++x) picture.at(x, y) = static_cast<uint8_t>(0.43 * model.median.at(x, y));
   }

@@ -1,4 +1,4 @@
-// The segmenter of a coloured screen: what is before it is the subject. Made by make_segmenter().
+// The segmenter for a coloured screen: what is in front of it is the subject. Made by make_segmenter().
 // Threads: one thread per segmenter.
 #pragma once
 

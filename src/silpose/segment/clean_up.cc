@@ -65,8 +65,8 @@ cv::Mat where_expected(const Mask& expected, const cv::Rect& part) {
   return near;
 }
 
-// The blob `best`, and what is too large for noise and too small for somebody else and lies close to it: a head, a
-// hand, that a sleeve or a neck of the background's colour cuts off. `labels` [h, w] of the pixels set in `mat`.
+// The blob `best`, and what is too large for noise, too small for another person, and close to it: a head, a hand, that
+// a sleeve or a neck of the background's colour cuts off. `labels` [h, w] of the pixels set in `mat`.
 std::vector<bool> parts_near(const cv::Mat& mat, const cv::Mat& labels, const std::vector<int64_t>& area, size_t best) {
   std::vector<bool> is_kept(area.size(), false);
   is_kept[best] = true;

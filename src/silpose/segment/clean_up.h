@@ -1,6 +1,6 @@
 // choose_blob(): of all that is foreground, the one blob that is the subject.
-// Based on: 8-connected labelling. Blobs apart by no more than a small gap count as one (a belt, a strap, a dark edge
-// cuts a silhouette in two).
+// Based on: 8-connected labelling. Blobs separated by no more than a small gap count as one (a belt, a strap or a dark
+// edge may cut a silhouette in two).
 // Threads: any thread.
 #pragma once
 
@@ -13,21 +13,22 @@ namespace silpose {
 
 struct CleanUpOptions {
   std::optional<Box> region;         // a blob counts only if at least half of its pixels lie inside
-  std::optional<Mask> garbage_mask;  // what is not set is cut away, first
+  std::optional<Mask> garbage_mask;  // what is not set is removed, first
   int min_blob_px = -1;              // area below which a blob does not count; -1: 0.05 % of the picture
-  double join_gap = 0.008;           // of the picture's height: gaps that do not part blobs, and are closed
+  double join_gap = 0.008;           // of the picture's height: gaps that do not separate blobs, and are closed
   double max_hole = 0.005;           // of the blob's area: holes up to this are filled
-  int grow_px = 0;                   // last: by so many pixels; negative shrinks
+  int grow_px = 0;                   // last: by that many pixels; negative shrinks
 
   // Errors: throws std::invalid_argument where a value is out of range.
   void check() const;
 };
 
-// The largest blob that counts, whole, with parts that lie close to it though cut off, such as a head (4 % of its
-// height, 0.5 to 30 % of its area); empty where none does. Where a silhouette is expected it is instead all blobs that
-// count and lie within that, grown by kExpectedMargin of its height, for the most part: a subject who is cut in two
-// stays whole, and what is larger elsewhere is not taken for him. Unless what they cover of it is too little to believe
-// in it. Errors: throws std::invalid_argument where the garbage mask, or what is expected, has another size.
+// The largest blob that counts, whole, with parts that are close to it but separate, such as a head (4 % of its height,
+// 0.5 to 30 % of its area); empty where none does. Where a silhouette is expected it is instead all blobs that count
+// and lie within that, grown by kExpectedMargin of its height, for the most part: a subject who is cut in two stays
+// whole, and a larger blob elsewhere is not mistaken for the subject. The expected silhouette is ignored where these
+// blobs cover too little of it. Errors: throws std::invalid_argument where the garbage mask, or what is expected, has
+// another size.
 inline constexpr double kExpectedMargin = 0.08;
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected = {});
 

@@ -56,7 +56,7 @@ TEST(ChooseBlob, GarbageMaskCutsBeforeBlobsAreCounted) {
   EXPECT_THROW((void)cleaned(kTwoBlobs, options), std::invalid_argument);
 }
 
-// A subject of two parts, and something larger beside him.
+// A subject of two parts, and something larger next to it.
 const char* const kCutInTwo =
     "##......\n"
     "##..####\n"
@@ -161,9 +161,9 @@ TEST(ChooseBlob, KeepsPartsThatAreCutOffButNoCrumbsAndNobodyElse) {
   fill(person, {80, 60, 40, 100});
   fill(person, {92, 43, 14, 14});  // the head: 3 above, 4.9 % of the size
   Mask all = person;
-  fill(all, {123, 100, 3, 3});   // a crumb beside it
+  fill(all, {123, 100, 3, 3});   // a crumb next to it
   fill(all, {140, 60, 20, 30});  // too far
-  fill(all, {30, 60, 47, 60});   // near, and somebody
+  fill(all, {30, 60, 47, 60});   // near, and another person
   EXPECT_EQ(choose_blob(all, {.join_gap = 0}), person);
 }
 

@@ -25,10 +25,10 @@ class DepthSegmenter : public BlobSegmenter {
     int64_t most = 0;
     for (const DepthImage& image : *samples) most = std::max(most, nearer_than_background(image, background_).count());
     if (static_cast<double>(most) < kLittleMoves * depth_.width * depth_.height) {
-      warnings_.push_back(
-          fmt::format("{}: next to nothing ever stands before the background; a subject who stays put is taken for it "
-                      "(--depth-range MIN,MAX helps)",
-                      depth_.name));
+      warnings_.push_back(fmt::format(
+          "{}: almost nothing is ever nearer than the background; a static subject is mistaken for background "
+          "(--depth-range MIN,MAX helps)",
+          depth_.name));
     }
     return {};
   }

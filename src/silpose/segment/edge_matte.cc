@@ -26,7 +26,7 @@ struct SampleRule {
 constexpr std::array<SampleRule, 2> kRounds = {SampleRule{2.5f, 2}, SampleRule{2, 1}};
 constexpr float kThinDepth = 1.2f;
 constexpr float kFarthest = 4;   // px beyond the band, of a sample
-constexpr float kStray = 16;     // grey levels that a pixel may lie beside the line between the two sides' colours
+constexpr float kStray = 16;     // grey levels that a pixel may lie off the line between the two sides' colours
 constexpr float kContrast = 12;  // grey levels between the two sides' colours at which picture and mask count alike
 constexpr float kMisfit = 4;     // how much a background that does not fit counts against the picture
 constexpr float kLeastWeight = 1e-4f, kDarkest = 0.4f, kBrightest = 1.5f;
@@ -151,8 +151,8 @@ void move_edge(const EdgeScene& scene, const SampleRule& rule, cv::Mat& mask, cv
         if (!of_subject && thin) of_subject = thin->at(x, y, farthest);
         if (!of_subject) continue;
         const auto [light, misfit] = scene.now.at(x, y);
-        // From the background towards the subject's colour; what lies beside that line is another colour of the
-        // subject, as far as it is no noise. Noise in the background alone must not count: it would widen the mask.
+        // From the background towards the subject's colour; what lies off that line is another colour of the subject,
+        // as far as it is no noise. Noise in the background alone must not count: it would widen the mask.
         float along = 0, away = 0, apart = 0;
         for (int c = 0; c < 3; ++c) {
           const float centre = c == 0 ? 0.0f : 128.0f;
@@ -165,8 +165,8 @@ void move_edge(const EdgeScene& scene, const SampleRule& rule, cv::Mat& mask, cv
         }
         apart = std::max(apart, 1.0f);
         const float towards = along / apart;
-        const float beside = std::max(away - towards * along - kStray * kStray, 0.0f) / apart;
-        const float part_covered = std::min(std::sqrt(square(std::max(towards, 0.0f)) + beside), 1.5f);
+        const float off_line = std::max(away - towards * along - kStray * kStray, 0.0f) / apart;
+        const float part_covered = std::min(std::sqrt(square(std::max(towards, 0.0f)) + off_line), 1.5f);
         const float say = apart / (apart + kContrast * kContrast + kMisfit * misfit);
         matte.at<float>(y, x) = say * part_covered + (1 - say) * near_mask.at<float>(y, x) / 255;
         const bool agrees = (matte.at<float>(y, x) > 0.5f) == (mask.at<uint8_t>(y, x) != 0);

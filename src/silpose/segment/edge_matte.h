@@ -1,7 +1,7 @@
-// refine_edge(): where a mask ends, decided anew by the picture and by what is behind the subject.
-// Based on: matting before a known background: how far a pixel lies from the background's colour towards the subject's,
-// both as they are near it (references.bib: smith1996). Twice: a mask that was too wide at first shows its own colours
-// better after the first time.
+// refine_edge(): where a mask ends, decided again from the picture and from what is behind the subject.
+// Based on: matting in front of a known background: how far a pixel lies from the background's colour towards the
+// subject's, both as they are near it (references.bib: smith1996). It runs twice: if the mask was too wide, the second
+// pass has better estimates of the colours.
 // Threads: functions without state.
 #pragma once
 
@@ -12,11 +12,11 @@ namespace silpose {
 
 struct EdgeMatte {
   Mask mask;             // [H, W]
-  ByteImage confidence;  // [H, W] 255: sure; less in the band, where picture and background cannot tell, or differ
-                         // from the mask that was given
+  ByteImage confidence;  // [H, W] 255: certain; less in the band, where the pictures are inconclusive, or disagree
+                         // with the mask that was given
 };
 
-// Only pixels in a band along the mask's edge, 2 % of the subject's size wide on either side, are decided anew, and
+// Only pixels in a band along the mask's edge, 2 % of the subject's size wide on either side, are decided again, and
 // only where `known` is set (absent: everywhere). Shapes: mask [H, W], picture and background [H, W, 3] in Y, Cr, Cb.
 // REQUIRES: equal sizes.
 EdgeMatte refine_edge(const Mask& mask, const ByteImage& luma_chroma, const ByteImage& background,

@@ -1,7 +1,7 @@
 // ForegroundFinder: the pixels that the background does not explain, neither as it is nor darkened by a shadow.
 // Based on: a chi-square distance with a shadow alternative of scaled luma and chroma (references.bib: horprasert1999),
-// made whole by mean-field steps over contrast-sensitive ties between neighbours (references.bib: boykov2001).
-// Threads: one thread per finder (it keeps scratch, which tells nothing of earlier pictures); works on all cores
+// regularised by mean-field steps over contrast-sensitive ties between neighbours (references.bib: boykov2001).
+// Threads: one thread per finder (it keeps scratch, which carries nothing from picture to picture); works on all cores
 // itself.
 #pragma once
 
@@ -23,7 +23,8 @@ class ForegroundFinder {
   // depth. REQUIRES: the model's size.
   Mask find(const ByteImage& luma_chroma, const Image<float>* others = nullptr);
 
-  // [H, W] How sure the last find() is, 255: sure. What only a shadow explains is not, whichever way it was decided.
+  // [H, W] The certainty of the last find(), 255: certain. Pixels that only a shadow explains are uncertain, whichever
+  // way they were decided.
   [[nodiscard]] ByteImage confidence(const Mask& found) const;
 
   [[nodiscard]] const BackgroundModel& model() const { return model_; }

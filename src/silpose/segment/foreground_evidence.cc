@@ -125,7 +125,7 @@ HWY_INLINE Colour<D> colour_at(D d, const uint8_t* pixels, size_t x) {
 }
 
 HWY_ATTR void weigh_evidence_row(const EvidenceRow& row, float* least, float* evidence, uint8_t* differs) {
-  // The least of the windows that hold the pixel: those beside it keep clear of the subject's edge.
+  // The least of the windows that hold the pixel: those next to it avoid the subject's edge.
   for_each_vector<float>(row.width, [&](auto d, size_t x) HWY_ATTR {
     auto of_rows = hn::LoadU(d, row.texture[0] + x);
     for (size_t r = 1; r < row.texture.size(); ++r) of_rows = hn::Min(of_rows, hn::LoadU(d, row.texture[r] + x));

@@ -1,5 +1,5 @@
-// What each pixel of a row says by itself of being foreground, before its neighbours are asked: the two passes over all
-// pixels that ForegroundFinder makes, by Highway for whatever vector registers the machine has.
+// The evidence of each single pixel of a row for being foreground, before its neighbours are considered: the two passes
+// over all pixels that ForegroundFinder makes, by Highway for the machine's vector registers.
 // Threads: functions without state.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace silpose {
 
-// Texture is compared in windows of so many pixels on either side. Small ones: a shadow on the floor is seen at a low
+// Texture is compared in windows of this many pixels on either side. Small ones: a shadow on the floor is seen at a low
 // angle and is a narrow strip.
 inline constexpr int kTextureReach = 1;
 
@@ -30,7 +30,7 @@ size_t texture_sums_size(size_t width);
 struct EvidenceRow {
   const uint8_t *seen, *background, *seen_around, *background_around;
   std::array<const float*, 3> inverse_noise;             // of each channel
-  std::array<const float*, TextureRows::kMost> texture;  // of this row and those beside it
+  std::array<const float*, TextureRows::kMost> texture;  // of this row and its neighbours
   float gain = 1;                                        // of the background's light
   size_t width = 0;
 };

@@ -46,13 +46,13 @@ class GivenMasks : public Segmenter {
         clean_up_(clean_up),
         warnings_(std::move(warnings)) {
     is_cleaned_ = clean_up.region || clean_up.garbage_mask || clean_up.grow_px != 0 || clean_up.min_blob_px > 0;
-    clean_up_.max_hole = clean_up_.join_gap = 0;  // whoever made the masks meant their holes and gaps
+    clean_up_.max_hole = clean_up_.join_gap = 0;  // holes and gaps of given masks are intended
     clean_up_.min_blob_px = std::max(clean_up_.min_blob_px, 0);
   }
 
   Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
     check(image.channels() == 3, "GivenMasks: {} channels", image.channels());
-    if (!masks_) return judge(white_of(told(image)));
+    if (!masks_) return judge(white_of(checked(image)));
     while (true) {
       Result<std::optional<Frame>> frame = masks_->next();
       if (!frame) return frame.failure();
@@ -66,24 +66,24 @@ class GivenMasks : public Segmenter {
         return error("{}: mask {} is {}x{}, its picture {}x{}", name_, index, mask.width(), mask.height(),
                      image.width(), image.height());
       }
-      return judge(white_of(told(mask)));
+      return judge(white_of(checked(mask)));
     }
   }
   [[nodiscard]] bool can_go_back() const override { return false; }  // masks are read in their order
-  [[nodiscard]] std::string state() const override { return to_bytes(is_told_, warnings_, monitor_); }
+  [[nodiscard]] std::string state() const override { return to_bytes(has_warned_, warnings_, monitor_); }
   void restore(std::string_view state) override {
-    check(from_bytes(state, is_told_, warnings_, monitor_), "GivenMasks: not a state of it");
+    check(from_bytes(state, has_warned_, warnings_, monitor_), "GivenMasks: not a state of it");
   }
   [[nodiscard]] std::string name() const override { return "masks"; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }
   [[nodiscard]] int64_t first_index() const override { return masks_ ? masks_->first_index() + offset_ : 0; }
 
  private:
-  // The first mask that is none is told of.
-  const ByteImage& told(const ByteImage& mask) {
+  // Warns once of a picture that is not a mask.
+  const ByteImage& checked(const ByteImage& mask) {
     bool has_white = false;
-    if (!is_told_ && !is_black_and_white(mask, has_white)) {
-      is_told_ = true;
+    if (!has_warned_ && !is_black_and_white(mask, has_white)) {
+      has_warned_ = true;
       warnings_.push_back(fmt::format("{}: not only black and white; what is lighter than half counts", name_));
     }
     return mask;
@@ -95,7 +95,7 @@ class GivenMasks : public Segmenter {
   int64_t offset_;
   CleanUpOptions clean_up_;
   std::vector<std::string> warnings_;
-  bool is_cleaned_ = false, is_told_ = false;
+  bool is_cleaned_ = false, has_warned_ = false;
   int64_t num_read_ = 0;
   TrustMonitor monitor_;
 };

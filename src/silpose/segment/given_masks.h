@@ -1,4 +1,4 @@
-// The segmenters that find nothing themselves: masks from files, one a picture, or pictures that are masks. Made by
+// The segmenters that only pass masks on: masks from files, one per picture, or pictures that are masks. Made by
 // make_segmenter().
 // Threads: one thread per segmenter.
 #pragma once
@@ -19,7 +19,7 @@ namespace silpose {
 std::unique_ptr<Segmenter> make_given_masks(std::string name, std::optional<Video> masks, int64_t offset,
                                             const CleanUpOptions& clean_up, std::vector<std::string> warnings = {});
 
-// Whether a video's pictures are masks: black and white alone, as told by the first ones that are not all black.
+// Whether a video's pictures are masks: black and white alone, judged by the first ones that are not all black.
 // Errors: those of Video::next().
 Result<bool> shows_masks(Video& video);
 

@@ -7,10 +7,10 @@
 namespace silpose {
 namespace {
 
-// A colour that may be a screen's: chroma in grey levels, and as a part of luma (which is not believed below a floor).
+// A colour that may be a screen's: chroma in grey levels, and as a part of luma (which is not trusted below a floor).
 constexpr float kLeastChroma = 12, kLeastSaturation = 0.33f, kDarkLuma = 40;
 constexpr float kHueWindowDeg = 20;
-// Hues (atan2 of Cb, Cr) from red to orange are skin's and wood's: nobody's screen unless the user says so.
+// Hues (atan2 of Cb, Cr) from red to orange are skin's and wood's: not a screen's unless the user says so.
 constexpr float kSkinFromDeg = -75, kSkinToDeg = 20;
 
 constexpr float kDegree = std::numbers::pi_v<float> / 180;

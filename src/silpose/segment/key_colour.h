@@ -40,8 +40,8 @@ struct Dominant {
 };
 
 // Without a key the mean colour of the commonest saturated hue, where the picture's border counts double, and skin's
-// and wood's hues do not; with a key that of the saturated pixels of its hue. What is not set in `keep` is not looked
-// at. REQUIRES: at least one sample.
+// and wood's hues do not; with a key that of the saturated pixels of its hue. Pixels that are not set in `keep` are
+// ignored. REQUIRES: at least one sample.
 Dominant dominant_colour(const BackgroundSamples& samples, const std::optional<KeyColour>& key,
                          const std::optional<Mask>& keep = {});
 

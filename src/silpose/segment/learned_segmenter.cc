@@ -16,11 +16,11 @@
 namespace silpose {
 namespace {
 
-// Looked at again where it thinks a person is, the network comes to believe in one: what is new has to convince it at
-// first sight.
+// Run again where it found a person, the network grows more confident of one: what is new has to convince it at first
+// sight.
 constexpr double kPresentAtFirst = 0.8, kStillPresent = 0.5;
 constexpr int kMaxLooks = 8;                              // until the square fits the person
-constexpr std::array<double, 3> kZooms = {1, 1.75, 3.5};  // small persons are sought in parts of the picture,
+constexpr std::array<double, 3> kZooms = {1, 1.75, 3.5};  // small persons are detected in parts of the picture,
 constexpr int kSearchEvery = 10;                          // but not in every picture without anybody
 constexpr double kMinSide = 24;                           // px, of a square with a person
 constexpr float kSureLogit = 5;
@@ -77,7 +77,7 @@ class LearnedSegmenter : public Segmenter {
     std::vector<std::string> warnings;
     if (num_lost_ > 0) {
       warnings.push_back(
-          fmt::format("the person was lost {} time{} and sought anew: it may have become another (--region helps)",
+          fmt::format("the person was lost {} time{} and detected again: it may be another person (--region helps)",
                       num_lost_, num_lost_ == 1 ? "" : "s"));
     }
     if (saw_others_)
@@ -198,7 +198,7 @@ class LearnedSegmenter : public Segmenter {
   TrustMonitor monitor_;
   std::optional<Plate> plate_;
   std::optional<PictureSquare> square_;  // where the person is looked for next
-  int num_without_ = 0;                  // pictures since somebody was seen
+  int num_without_ = 0;                  // pictures since a person was seen
   int num_lost_ = 0;
   bool saw_others_ = false;
 };

@@ -1,5 +1,5 @@
-// The segmenter that knows what a person looks like: no background is needed, and none learned. A person is sought in
-// the whole picture (or the region) and then followed from picture to picture. Made by make_segmenter().
+// The segmenter by a network trained on people: no background is needed, and none learned. A person is detected in the
+// whole picture (or the region) and then followed from picture to picture. Made by make_segmenter().
 // Based on: person_network.h, plate.h, edge_matte.h.
 // Threads: one thread per segmenter; works on all cores itself.
 #pragma once
@@ -13,8 +13,8 @@
 
 namespace silpose {
 
-// With samples of a clip that is taken by a camera that stands still: what is behind the person is learned from them,
-// and the mask's edge follows it where it is known.
+// With samples of a clip from a static camera: what is behind the person is learned from them, and the mask's edge
+// follows it where it is known.
 std::unique_ptr<Segmenter> make_learned_segmenter(PersonNetwork network, PersonDetector detector,
                                                   const CleanUpOptions& clean_up,
                                                   const std::optional<BackgroundSamples>& samples = {});

@@ -1,5 +1,5 @@
 // PersonNetwork: in a square of the picture, the mask of the person in it and the landmarks of the body, by a trained
-// network; and PersonDetector, which says where such squares are.
+// network; and PersonDetector, which finds such squares.
 // Based on: BlazePose (references.bib: bazarevsky2020) and the weights that scripts/fetch-network-data fetches; the
 // rule of its anchors is that of SSD (references.bib: liu2016ssd). Threads: one thread per object; works on all cores
 // itself.
@@ -67,8 +67,8 @@ class PersonDetector {
   // Errors: as PersonNetwork::load().
   static Result<PersonDetector> load(const std::filesystem::path& folder);
 
-  // Persons whom an upright square of the picture shows, the surest first, none twice. One who fills less than about a
-  // fifth of it is not seen.
+  // The persons in an upright square of the picture, the most certain first, none twice. A person who fills less than
+  // about a fifth of it is not detected.
   std::vector<PersonDetection> detect(const ByteImage& image, const PictureSquare& square);
 
  private:

@@ -1,5 +1,5 @@
-// PictureSquare: a square of a picture, which may be turned, shown to a network, and what the network says about it put
-// back in its place. Points are in pixels whose corners are whole numbers: the middle of the first is (0.5, 0.5).
+// PictureSquare: a square of a picture, which may be rotated, that a network sees, and the network's output mapped back
+// to its place. Points are in pixels whose corners are whole numbers: the middle of the first is (0.5, 0.5).
 // Threads: values and functions without state.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace silpose {
 struct PictureSquare {
   double x = 0, y = 0;  // its middle
   double side = 0;      // may reach beyond the picture
-  double turn_rad = 0;  // clockwise as one sees it; 0: upright
+  double turn_rad = 0;  // clockwise on the screen; 0: upright
 
   // A point of the square, from (0, 0) top left to (1, 1) bottom right, in the picture.
   [[nodiscard]] std::array<double, 2> in_picture(double u, double v) const;

@@ -38,7 +38,7 @@ TEST(LearnPlate, KnowsWhatItDoesNotKnow) {
   }
   const Plate plate = learn_plate(pictures, masks);
   EXPECT_FALSE(plate.known.get(70, 60));
-  EXPECT_FALSE(plate.known.get(58, 60)) << "the mask's edge is not believed";
+  EXPECT_FALSE(plate.known.get(58, 60)) << "the mask's edge is not trusted";
   EXPECT_TRUE(plate.known.get(40, 60));
   EXPECT_EQ(learn_plate({pictures[0]}, {Mask(scene.width, scene.height)}).known.count(), 0);
 }

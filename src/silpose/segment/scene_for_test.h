@@ -15,7 +15,7 @@ namespace silpose {
 struct TestScene {
   int width = 160, height = 120;
   double noise = 2;     // grey levels
-  double shadow = 0;    // 0: none; 0.3: darkens the floor beside the subject by so much
+  double shadow = 0;    // 0: none; 0.3: darkens the floor next to the subject by that fraction
   double exposure = 1;  // of the whole picture
 
   [[nodiscard]] ByteImage backdrop() const {

@@ -15,10 +15,10 @@ namespace {
 
 constexpr float kLeastShare = 0.08f;  // of the picture, for a screen
 
-// Deeper shadow than this part of the screen's luma is taken for something black.
+// Deeper shadow than this part of the screen's luma is treated as something black.
 constexpr float kDeepestShadow = 0.2f;
 constexpr float kAskedInShadow = 0.7f;
-// Hue may stray so far (as tangent) without loss; beyond, so much of the likeness is lost for each unit.
+// Hue may deviate this far (as tangent) without loss; beyond, this much of the likeness is lost for each unit.
 constexpr float kHueSlack = 0.35f, kHueLoss = 1.3f;
 
 constexpr int kCell = 8;                                  // pixels; the screen's colour changes slowly

@@ -1,6 +1,6 @@
-// ScreenModel: what a coloured screen (chroma key) looks like at every pixel when nobody stands before it, and where it
-// ends. A pixel is screen where its colour difference is the screen's there, scaled with its brightness: a shadow on
-// the screen stays screen, neutral or skin-coloured spill stays subject.
+// ScreenModel: what a coloured screen (chroma key) looks like at every pixel without a subject in front of it, and
+// where it ends. A pixel is screen where its colour difference is the screen's there, scaled with its brightness: a
+// shadow on the screen stays screen, neutral or skin-coloured spill stays subject.
 // Based on: colour-difference keying (references.bib: smith1996) on Cr and Cb; the model is a normalised convolution
 // (references.bib: knutsson1993) of what was seen of the screen over the clip; edges follow
 // the luma as a guided filter's do (references.bib: he2013).
@@ -20,14 +20,14 @@ namespace silpose {
 struct ScreenModel {
   KeyColour key{};       // the screen's mean colour, as filmed
   Image<float> project;  // [H, W, 3] 1 / Y; Cr / |C|^2 and Cb / |C|^2 of the lit screen there, C = (Cr, Cb) - 128
-  Mask inside;           // [H, W] the convex hull of what ever is screen
-  double filled = 0;     // the part of it that ever is
+  Mask inside;           // [H, W] the convex hull of what is screen in any picture
+  double filled = 0;     // the part of it that is screen in any picture
 
   [[nodiscard]] int width() const { return inside.width(); }
   [[nodiscard]] int height() const { return inside.height(); }
 };
 
-// From pictures spread over the clip, whoever stands in them; key and `keep` as for dominant_colour().
+// From pictures spread over the clip, which may show the subject; key and `keep` as for dominant_colour().
 // REQUIRES: at least one sample, equal sizes.
 // Errors: no colour (or not the key's) covers enough of the picture to be a screen.
 Result<ScreenModel> learn_screen(const BackgroundSamples& samples, const std::optional<KeyColour>& key,

@@ -134,7 +134,7 @@ TEST(ScreenModel, SaysWhereThereIsNone) {
               HasSubstr("no screen: the commonest saturated colour covers 0.0 %"));
   EXPECT_THAT(learn_screen(Stage().samples(), KeyColour{0, 0, 255}).error().message,
               HasSubstr("the key colour's hue covers 0"));
-  // Skin and wood are nobody's screen, unless they are named.
+  // Skin and wood are not screens, unless they are named.
   const BackgroundSamples wood = Stage{.screen = {150, 85, 40}}.samples();
   EXPECT_FALSE(learn_screen(wood, {}).ok());
   EXPECT_TRUE(learn_screen(wood, KeyColour{150, 85, 40}).ok());

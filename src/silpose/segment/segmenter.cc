@@ -23,15 +23,15 @@ std::vector<std::string> doubts(const std::string& input, const BackgroundModel&
   const BackgroundDoubt doubt = doubt_background(model, samples, clean_up.region);
   if (doubt.ever_covered < kLittleMoves) {
     return {
-        fmt::format("{}: next to nothing moves in this clip; a subject who stays put is taken for background "
+        fmt::format("{}: almost nothing moves in this clip; a static subject is mistaken for background "
                     "(--background with a plate or lead-in:SECONDS helps)",
                     input)};
   }
   if (doubt.half_covered > kMuchHalfCovered) {
-    return {
-        fmt::format("{}: in {:.1f} % of the picture something stays for a good part of the clip; a subject who stays "
-                    "put may have been taken for background (--background with a plate or lead-in:SECONDS helps)",
-                    input, 100 * doubt.half_covered)};
+    return {fmt::format(
+        "{}: in {:.1f} % of the picture something stays for a large part of the clip; a subject who does not "
+        "move may have been mistaken for background (--background with a plate or lead-in:SECONDS helps)",
+        input, 100 * doubt.half_covered)};
   }
   return {};
 }
@@ -79,8 +79,7 @@ Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const Se
   if (options.masks.empty()) {
     std::vector<std::string> warnings;
     if (options.kind == "auto") {
-      warnings.push_back(
-          fmt::format("{}: black and white alone, so taken for masks (--segmenter says otherwise)", input));
+      warnings.push_back(fmt::format("{}: black and white only, so used as masks (--segmenter overrides this)", input));
     }
     return make_given_masks(input, {}, 0, options.clean_up, std::move(warnings));
   }

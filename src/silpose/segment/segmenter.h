@@ -25,10 +25,10 @@ namespace silpose {
 
 struct Segmentation {
   Mask mask;                                 // [H, W] the chosen blob
-  ByteImage confidence = {};                 // [H, W] of each pixel, 255: sure; empty: sure everywhere
-  std::vector<SeenLandmark> landmarks = {};  // where the segmenter knows of any
+  ByteImage confidence = {};                 // [H, W] of each pixel, 255: certain; empty: certain everywhere
+  std::vector<SeenLandmark> landmarks = {};  // where the segmenter finds any
   Keypoints3D keypoints = {};                // the same in space
-  double trust = 1;                          // 0: nothing to go by; 1: as good as a given mask
+  double trust = 1;                          // 0: unusable; 1: as good as a given mask
   bool nothing_found = false;                // no blob counts
   bool touches_border = false;               // part of the subject may be outside the picture
   bool area_jumped = false;                  // the area is far from the recent median
@@ -42,11 +42,11 @@ class Segmenter {
   // Errors: the picture has another size than those learned from; given masks that end, break or have another size.
   virtual Result<Segmentation> segment(const ByteImage& image, int64_t index) = 0;
 
-  // Does what segment() can do for a picture before anybody knows where the subject is expected in it; segment() of
-  // that picture then takes less time and finds the same. While it runs only expect() may be called.
+  // Does the part of segment() that does not need the expected silhouette; segment() of that picture then takes less
+  // time and gives the same result. While it runs only expect() may be called.
   virtual void prepare(const ByteImage& /*image*/, int64_t /*index*/) {}
 
-  // Where the subject is expected in the next picture, [H, W]; empty: nobody knows. It helps to choose among blobs
+  // Where the subject is expected in the next picture, [H, W]; empty: unknown. It helps to choose among blobs
   // (choose_blob()) and never becomes foreground by itself. A network needs no such help.
   virtual void expect(Mask /*silhouette*/) {}  // NOLINT(performance-unnecessary-value-param): others keep it
 
@@ -62,7 +62,8 @@ class Segmenter {
   // Whether it can be shown earlier pictures again after restore().
   [[nodiscard]] virtual bool can_go_back() const { return !sees_all(); }
 
-  // What it carries from picture to picture besides that: another one, made alike, goes on from it as this one would.
+  // What it carries from picture to picture besides that: another one with the same options continues from it as this
+  // one would.
   // Errors: restore() throws std::invalid_argument for what is no such state.
   [[nodiscard]] virtual std::string state() const { return {}; }
   virtual void restore(std::string_view state) { check(state.empty(), "Segmenter: not a state of it"); }
@@ -76,14 +77,14 @@ class Segmenter {
 
 struct SegmenterOptions {
   std::string kind = "auto";  // auto, background, chroma, depth, learned, masks
-  std::string background;     // auto, online, online:knn, lead-in:SECONDS, a video, a picture; empty: none is asked for
+  std::string background;     // auto, online, online:knn, lead-in:SECONDS, a video, a picture; empty: none
   std::string networks;       // folder of what scripts/fetch-network-data fetches
   // A directory, a pattern, a video; empty with kind masks: the input itself. As many as frames belong to them in
   // order, otherwise mask number i to frame number i.
   std::string masks;
   std::optional<KeyColour> key_colour;  // of the screen; absent: found from the clip
-  // 16-bit pictures in mm: a directory or a pattern; to frames as masks are. With kind background they join the
-  // colours.
+  // 16-bit pictures in mm: a directory or a pattern; to frames as masks are. With kind background they are used
+  // together with the colours.
   std::string depth;
   std::optional<DepthRange> depth_range;
   double default_fps = 30;  // of input that carries no rate

@@ -76,7 +76,7 @@ TEST_F(SegmenterTest, BackgroundOfTheWholeClip) {
   expect_finds_subject(*segmenter, 0);
 }
 
-// Each goes on from its state as the one that told it; one that learns online from seeing all.
+// Each continues from its state as the one that gave it; one that learns online from seeing all.
 TEST_F(SegmenterTest, GoesOnFromItsState) {
   write_masks("masks", kFrames);
   const SegmenterOptions kinds[] = {
@@ -183,7 +183,7 @@ TEST_F(SegmenterTest, AClipOfMasksIsTakenForMasks) {
   write_masks("masks", kFrames);  // the first ones are all black
   const auto segmenter = make_segmenter(at("masks")).value();
   EXPECT_EQ(segmenter->name(), "masks");
-  EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("masks: black and white alone, so taken for masks")));
+  EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("masks: black and white only, so used as masks")));
   EXPECT_EQ(segmenter->segment(read_colour_image(at("masks/030.png")).value(), 30)->mask, truth(30));
   VideoWriter writer = create_video(at("masks.mp4"), truth(0).width(), truth(0).height(), 10).value();
   for (int i = 0; i < kFrames; ++i) writer.write(image_from_mask(truth(i))).value();
@@ -195,7 +195,7 @@ TEST_F(SegmenterTest, AClipOfMasksIsTakenForMasks) {
   EXPECT_EQ(make_segmenter(at("clip")).value()->name(), "background auto");
 }
 
-TEST_F(SegmenterTest, PicturesThatAreNoMasksAreTold) {
+TEST_F(SegmenterTest, PicturesThatAreNoMasksAreReported) {
   const auto segmenter = make_segmenter(at("clip"), {.kind = "masks"}).value();
   EXPECT_THAT(segmenter->warnings(), IsEmpty());
   for (int i = 0; i < 3; ++i) (void)segmenter->segment(picture(i), i).value();
@@ -313,9 +313,9 @@ TEST_F(SegmenterTest, DepthJoinsTheColours) {
     }
     return least;
   };
-  EXPECT_LT(worst({.kind = "background"}, "same"), 0.3) << "colour cannot tell";
+  EXPECT_LT(worst({.kind = "background"}, "same"), 0.3) << "colour cannot distinguish them";
   EXPECT_GT(worst({.kind = "background", .depth = at("depth")}, "same"), 0.95);
-  EXPECT_LT(worst({.kind = "depth", .depth = at("blind")}, "clip"), 0.7) << "depth alone cannot tell";
+  EXPECT_LT(worst({.kind = "depth", .depth = at("blind")}, "clip"), 0.7) << "depth alone cannot distinguish them";
   EXPECT_GT(worst({.kind = "background", .depth = at("blind")}, "clip"), 0.95);
   EXPECT_EQ(make_segmenter(at("same"), {.kind = "background", .depth = at("depth")}).value()->name(),
             "background auto with depth");
@@ -362,7 +362,7 @@ TEST_F(SegmenterTest, DepthSegmentsByItself) {
   EXPECT_THAT(make_segmenter(at("few"), {.kind = "depth", .depth = at("small")}).error().message,
               HasSubstr("small/0.png: depth of 80x60 for pictures of 160x120"));
   EXPECT_THAT(make_segmenter(at("few"), {.kind = "depth", .depth = at("flat")}).value()->warnings(),
-              ElementsAre(HasSubstr("next to nothing ever stands before the background")));
+              ElementsAre(HasSubstr("almost nothing is ever nearer than the background")));
 }
 
 TEST_F(SegmenterTest, WarnsOfASubjectWhoStays) {
@@ -370,7 +370,7 @@ TEST_F(SegmenterTest, WarnsOfASubjectWhoStays) {
   for (int i = 0; i < 12; ++i) {
     write_image(at(fmt::format("still/{:02}.png", i)), scene_.picture(60, static_cast<uint64_t>(i))).value();
   }
-  EXPECT_THAT(make_segmenter(at("still")).value()->warnings(), ElementsAre(HasSubstr("next to nothing moves")));
+  EXPECT_THAT(make_segmenter(at("still")).value()->warnings(), ElementsAre(HasSubstr("almost nothing moves")));
   fs::create_directories(at("half"));
   for (int i = 0; i < 20; ++i) {
     write_image(at(fmt::format("half/{:02}.png", i)), scene_.picture(i < 8 ? 60 : 6 * i, 5u + i)).value();
@@ -378,7 +378,7 @@ TEST_F(SegmenterTest, WarnsOfASubjectWhoStays) {
   EXPECT_THAT(make_segmenter(at("half")).value()->warnings(), ElementsAre(HasSubstr("something stays")));
 }
 
-TEST_F(SegmenterTest, StopsWhenTold) {
+TEST_F(SegmenterTest, StopsWhenAsked) {
   struct Stop : ProgressSink {
     bool update(std::string_view, int64_t done, int64_t) override { return done < 5; }
   } stop;

@@ -14,7 +14,7 @@ namespace {
 constexpr size_t kMaxFileBytes = size_t{1} << 30;
 constexpr int64_t kMaxElements = int64_t{1} << 26;  // of one tensor
 constexpr int kMaxSize = 1 << 20;                   // of one axis
-constexpr int kMaxStep = 1024;                      // strides and the like
+constexpr int kMaxStep = 1024;                      // strides, dilations etc.
 enum TensorType { kFloat32 = 0, kFloat16 = 1, kInt32 = 2 };
 
 // A table of the file. What lies outside of the file reads as absent, and is remembered in `broken`.

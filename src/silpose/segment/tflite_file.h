@@ -1,7 +1,7 @@
 // read_tflite(): a network's description in a TensorFlow Lite file, as plain values.
 // Based on: the public TFLite schema, whose fields are read by number through FlatBuffers; every offset and size is
-// checked first, so that a damaged file is an error and nothing worse. Constants come out as 32-bit numbers, whether
-// the file holds them as halves or sparse. Threads: a function without state.
+// checked first, so that a damaged file is only an error. Constants come out as 32-bit numbers, whether the file holds
+// them as halves or sparse. Threads: a function without state.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +38,7 @@ enum class TfliteOp {
 
 enum class TfliteActivation { kNone = 0, kRelu = 1, kRelu6 = 3 };
 
-// What an operator does not have stays as it is here.
+// Fields that an operator does not have keep these defaults.
 struct TfliteOperator {
   TfliteOp op = TfliteOp::kAdd;
   std::vector<int> inputs;  // tensors; -1: an optional one that is absent

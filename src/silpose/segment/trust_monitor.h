@@ -1,4 +1,4 @@
-// TrustMonitor: how far a mask can be trusted, by what can be seen of it without knowing the subject.
+// TrustMonitor: how far a mask can be trusted, from what can be measured without knowing the subject.
 // Threads: one thread per monitor.
 #pragma once
 

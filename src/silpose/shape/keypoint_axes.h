@@ -1,4 +1,4 @@
-// The axes of a network's keypoints, and how far off the directions of limbs are that the network sees in them.
+// The axes of a network's keypoints, and the errors of the limb directions that the network finds.
 // Threads: constants and a function without state.
 #pragma once
 
@@ -13,7 +13,7 @@ namespace silpose {
 // The rotation from the axes of the keypoints to the world's.
 Eigen::Matrix3d world_from_keypoints(const PinholeCamera& camera, const Keypoints3D& keypoints);
 
-// What the unit vector of a segment is off, one standard deviation: each axis in the image, and in depth.
+// Error of a segment's unit vector, one standard deviation: each axis in the image, and in depth.
 // [measured: BlazePose against marker motion capture and triangulated keypoints, nine takes of some five people]
 struct DirectionError {
   double in_image = 0, in_depth = 0;

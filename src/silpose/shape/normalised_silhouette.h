@@ -1,5 +1,5 @@
-// Normalised silhouettes: cropped to the bounding box and stretched to a common size, so that distances between them do
-// not depend on where the subject stands nor on how large it appears. Both axes are stretched on their own: the common
+// Normalised silhouettes: cropped to the bounding box and stretched to a common size, so that distances between them
+// depend neither on the subject's position nor on its apparent size. Both axes are stretched on their own: the common
 // size is filled whatever the silhouette's proportions.
 // Source: thesis section 2.3.1 (references.bib: cormier2019).
 // Threads: pure functions.

@@ -32,7 +32,7 @@ TEST(ResampleMask, HalfCoveredPixelsAreSet) {
   EXPECT_EQ(text_from_mask(resample_mask(mask, window_of_image(6, 4, 0.5))), "###\n...\n");
 }
 
-TEST(ResampleCoverage, TellsHowMuchOfEachPixelIsSet) {
+TEST(ResampleCoverage, GivesHowMuchOfEachPixelIsSet) {
   const Mask mask = mask_from_text(R"(
     ####.#
     ##...#

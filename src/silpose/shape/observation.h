@@ -1,5 +1,5 @@
-// Observation: what the tracker is told about one camera at one instant: the mask of the subject and how far to trust
-// it. Threads: a value.
+// Observation: the tracker's input from one camera at one instant: the mask of the subject and how far to trust it.
+// Threads: a value.
 #pragma once
 
 #include <tuple>
@@ -23,7 +23,7 @@ struct Trust {
 struct Observation {
   Mask mask;                  // whole image, the chosen blob
   Box box;                    // its bounding box
-  ByteImage confidence = {};  // of each pixel, 255: sure; empty: sure everywhere. Only the fitted filter looks at it.
+  ByteImage confidence = {};  // of each pixel, 255: certain; empty: certain everywhere. Only the fitted filter uses it.
   std::vector<SeenLandmark> landmarks = {};  // of the body; none from most segmenters
   Keypoints3D keypoints = {};                // the same in space; empty from most segmenters
   Trust trust;

@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr size_t kLevels = 2048;  // of amplitude that are told apart
+constexpr size_t kLevels = 2048;  // of amplitude that are distinguished
 constexpr double kClose = 0.005;  // to the wanted intersection over union
 constexpr uint64_t kHoles = 5;
 constexpr double kLeastShare = 0.01;  // of the mesh's faces: a joint with fewer is no segment

@@ -1,5 +1,5 @@
-// DegradedMasks: the silhouettes of a SyntheticSequence with the faults that segmentation makes. What is true of the
-// sequence, its poses and joints, stays.
+// DegradedMasks: the silhouettes of a SyntheticSequence with the faults that segmentation makes. The sequence's true
+// poses and joints stay unchanged.
 // Threads: const functions are safe; a mask is the same whichever thread draws it, and in whatever order.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace silpose {
 
 enum class MaskFault {
   kNone,
-  kShadow,  // the body's whole shadow on the floor is taken for the body; it falls as in colour pictures
+  kShadow,  // the body's whole shadow on the floor is mistaken for the body; it falls as in colour pictures
   kEdge,    // the outline wanders about the true one
   kLimb,    // a limb's segment (a joint's share of the mesh) is not seen for 0.3 to 1 s at a time
   kHole,    // up to five blobs inside are missing; they stay on the body for 0.3 to 1.2 s each
@@ -35,8 +35,8 @@ Result<MaskFault> parse_mask_fault(const std::string& text);
 class DegradedMasks {
  public:
   // The amplitude of kEdge is searched for so that the wanted mean is met over the frames with a body. The sequence
-  // must outlive this. Errors: an outline that cannot be so bad; a body without limbs; throws std::invalid_argument for
-  // no such camera, or an intersection over union that is not above 0 and below 1.
+  // must outlive this. Errors: an intersection over union that the outline noise cannot reach; a body without limbs;
+  // throws std::invalid_argument for no such camera, or an intersection over union that is not above 0 and below 1.
   static Result<DegradedMasks> create(const SyntheticSequence& sequence, int camera_idx, const MaskNoise& noise);
 
   // Frame `frame`, counted from the video's first image; empty in the lead-in.

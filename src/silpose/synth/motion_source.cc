@@ -222,7 +222,7 @@ Poses random_smooth(const BodyModel& body, const SyntheticMotionOptions& options
       frequency[static_cast<size_t>(k)] = rng.uniform(0.25, 1) / period;
       phase[static_cast<size_t>(k)] = rng.uniform(0, 2 * kPi);
     }
-    if (dof.is_translation && std::abs(dof.axis.y()) > 0.5) continue;  // the floor tells
+    if (dof.is_translation && std::abs(dof.axis.y()) > 0.5) continue;  // the floor determines it
     double reach = amplitude;
     if (dof.is_translation) reach = 0.3;
     if (!dof.is_translation && is_root_dof(skeleton, dof))

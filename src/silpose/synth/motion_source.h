@@ -36,7 +36,7 @@ Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& bo
                                     const SyntheticMotionOptions& options = {});
 
 // A pose drawn by seed: every angle between zero and most of the way to a limit, facing roughly forward, lowest point
-// on the floor. Of a human also plausible: hands and elbows outside the trunk, knees and feet apart, no handstand. [D]
+// on the floor. For a human also plausible: hands and elbows outside the trunk, knees and feet apart, no handstand. [D]
 std::vector<double> draw_static_pose(const BodyModel& body, uint64_t seed);
 
 // One DOF swings over its whole range and back once every period; all others stay zero, standing. [T][D]
@@ -46,10 +46,10 @@ std::vector<std::vector<double>> sweep_dof(const BodyModel& body, int dof_idx, c
 // A human leans over the ankles in a slow figure of eight, arms swinging; any other body swings all of its angles.
 std::vector<std::vector<double>> sway(const BodyModel& body, const SyntheticMotionOptions& options);
 
-// Walks round a circle of 1 m radius about the origin, swinging arms and legs. Other bodies just go round.
+// Walks around a circle of 1 m radius about the origin, swinging arms and legs. Other bodies just move along it.
 std::vector<std::vector<double>> walk_circle(const BodyModel& body, const SyntheticMotionOptions& options);
 
-// Every angle a sum of sinusoids no faster than the period, around a relaxed stand; drawn by seed.
+// Every angle a sum of sinusoids no faster than the period, around a relaxed standing pose; drawn by seed.
 std::vector<std::vector<double>> random_smooth(const BodyModel& body, const SyntheticMotionOptions& options);
 
 // A clip retargeted, its first num_frames. Errors: those of retarget(); too few frames.

@@ -12,14 +12,14 @@ namespace {
 
 constexpr int kWaves = 128;
 constexpr double kReach = 0.12;         // largest displacement, of the body's height
-constexpr double kNormalRadius = 0.01;  // of the neighbourhood that tells the outline's direction, of the height
+constexpr double kNormalRadius = 0.01;  // of the neighbourhood that gives the outline's direction, of the height
 
 struct OutlinePoint {
   int x = 0, y = 0;
   double normal_x = 0, normal_y = 0;  // outwards, unit
 };
 
-// Set pixels beside one that is not; where the picture ends is no outline.
+// Set pixels next to one that is not; where the picture ends is no outline.
 std::vector<OutlinePoint> find_outline(const Mask& mask, const Box& box, int radius) {
   const auto is_set = [&](int x, int y) {
     return x < 0 || y < 0 || x >= mask.width() || y >= mask.height() || mask.get(x, y);

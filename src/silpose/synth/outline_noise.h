@@ -32,7 +32,7 @@ class OutlineNoise {
     double amplitude = 0;
   };
 
-  // All of them up to the largest amplitude; displacements end at 12 % of the height. Places are told from the middle
+  // All of them up to the largest amplitude; displacements end at 12 % of the height. Places are relative to the middle
   // of the mask. `height_px`: of the body, as far away as it is.
   [[nodiscard]] std::vector<Change> changes(const Mask& truth, double height_px, double time_s) const;
 

@@ -1,4 +1,4 @@
-// SyntheticSequence: a moving body before one or several cameras, and what is true of it: masks and joints.
+// SyntheticSequence: a moving body in front of one or several cameras, and its ground truth: masks and joints.
 // Pictures of it are drawn in colour_scene.h; files are written in sequence_files.h.
 // Threads: a value and functions without state.
 #pragma once
@@ -17,8 +17,7 @@
 
 namespace silpose {
 
-// Where a camera stands around the middle of the path: 0 sees the front of a resting subject, 90 its left side.
-// Degrees.
+// A camera's position around the middle of the path: 0 sees the front of a resting subject, 90 its left side. Degrees.
 struct View {
   std::string name;
   double azimuth_deg = 0;
@@ -40,15 +39,15 @@ struct SyntheticSequence {
   std::shared_ptr<const BodyModel> body;
   std::vector<std::vector<double>> poses;  // [T][D], of the motion; the first belongs to frame `lead_in`
   std::vector<PinholeCamera> cameras;      // [C], named as their views
-  double distance_m = 0;                   // at which the cameras stand
+  double distance_m = 0;                   // of the cameras
   double fps = 30;
   int lead_in = 0;
 
   [[nodiscard]] int num_frames() const { return lead_in + static_cast<int>(poses.size()); }
 };
 
-// Cameras look level at the middle of the box around all that is seen of the body. They stand farther than asked where
-// some frame would not lie inside the picture. Errors: no frame; a body that does not fit from 200 m away; throws
+// Cameras look level at the middle of the box around all that is seen of the body. They are farther away than requested
+// where some frame would not fit into the picture. Errors: no frame; a body that does not fit from 200 m away; throws
 // std::invalid_argument for sizes that are not positive, no view, or two of one name.
 Result<SyntheticSequence> make_sequence(std::shared_ptr<const BodyModel> body, const SyntheticMotion& motion,
                                         const SceneOptions& options = {});

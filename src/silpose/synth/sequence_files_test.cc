@@ -100,7 +100,7 @@ TEST_F(SequenceFiles, HaveOneSetOfMasksForEachCamera) {
   EXPECT_EQ(load_cameras(directory_ / "camera.toml").value()[1].name, "45");
 }
 
-TEST_F(SequenceFiles, TellOfTheFramesDoneWhenStopped) {
+TEST_F(SequenceFiles, DescribeTheFramesDoneWhenStopped) {
   const SyntheticSequence sequence = make_test_scene(20);
   StopAfter stop(5);
   const int done = write_sequence(directory_, sequence, std::nullopt, &stop).value();

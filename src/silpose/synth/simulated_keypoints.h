@@ -1,6 +1,6 @@
-// SimulatedKeypoints: what a network would see of the body of a SyntheticSequence: directions of segments that are off
-// as far as a real network's are, some of it in every frame alike (the network's bias for this person and view) and the
-// rest by itself in each frame; lengths of segments are true. Places in the image are off in the same two ways.
+// SimulatedKeypoints: what a network would find on the body of a SyntheticSequence: directions of segments with errors
+// as large as a real network's, partly the same in every frame (the network's bias for this person and view) and partly
+// independent in each frame; lengths of segments are true. Places in the image have errors of the same two kinds.
 // Threads: const functions are safe; a frame is the same in whatever order they are drawn.
 #pragma once
 

@@ -11,8 +11,8 @@
 namespace silpose {
 namespace {
 
-// [guess] Outline noise, in units of pixel_unit^3. Below kRightBody the body is taken for the subject's, above kAnyBody
-// for an arbitrary one.
+// [guess] Outline noise, in units of pixel_unit^3. Below kRightBody the body is assumed to be the subject's, above
+// kAnyBody for an arbitrary one.
 constexpr double kRightBody = 2, kAnyBody = 20;
 // Some errors are the same in all frames: the subject is not built as the body is, and a network has a bias for each
 // person and view. All frames together then have this share of the information of a single frame.

@@ -1,10 +1,10 @@
-// BodyError: how far an estimate may be off because the subject is not built as the body is.
+// BodyError: the error of an estimate because the subject's build differs from the body's.
 //   - Bones may be longer or shorter (body/stretchable.h). A pose fitted with wrong lengths has the same error in all
-//     frames, however well it overlaps. The noise of the outline shows how wrong the body is: nothing is added where it
-//     is as low as exact masks of the right body leave it.
+//     frames, however well it overlaps. The noise of the outline shows how wrong the body is: nothing is added where
+//     the noise is as low as exact masks of the right body leave it.
 //   - One camera sees a large body far away as it sees a small one nearby. The deviation of the size is an option, and
-//     is added whatever the outline.
-//   - Masks and networks have errors that change little from frame to frame. A filter that takes them for independent
+//     is always added.
+//   - Masks and networks have errors that change little from frame to frame. A filter that treats them as independent
 //     claims too much accuracy. The covariance of a single frame is added, as far as the outline's noise shows that
 //     neither body nor masks are exact.
 // Based on: consider covariance of parameters that are not estimated (references.bib: schmidt1966).

@@ -46,13 +46,13 @@ void FittedFilter::start(std::span<const StartingPose> starts) {
 
 void FittedFilter::add(std::span<const StartingPose> starts) {
   mixture_.add(poses_of(starts));
-  sought_ = true;
+  added_ = true;
 }
 
 FilterReport FittedFilter::step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) {
   const Stopwatch stopwatch;
   CoverageEvidence evidence = fine_->prepare(observations, Blur::k8, Blur::k2, evidence_);
-  if (noise_.empty() || sought_) begin_noise(evidence);
+  if (noise_.empty() || added_) begin_noise(evidence);
   evidence.set_noise(noise_);
   mixture_.step(evidence, dt_s);
   update_noise(evidence);
@@ -68,8 +68,8 @@ FilterReport FittedFilter::coast(double dt_s) {
   return report();
 }
 
-// The best of what there is says how good a fit can be. Later on only one that is far better has a say: what was lost
-// until now told nothing of the outlines.
+// The best hypothesis shows how good a fit can be. Later on only one that fits far better counts: then the filter was
+// lost until now, and its noise said nothing about the outlines.
 void FittedFilter::begin_noise(const CoverageEvidence& evidence) {
   CoverageLikelihood::Scratch scratch(*fine_);
   std::vector<Eigen::VectorXd> poses;
@@ -80,7 +80,7 @@ void FittedFilter::begin_noise(const CoverageEvidence& evidence) {
     if (noise_[c] == 0) noise_[c] = least[c] > 0 ? least[c] : CoverageLikelihood::kExactNoise;
     if (least[c] > 0 && least[c] < kFarBetter * noise_[c]) noise_[c] = least[c];
   }
-  sought_ = false;
+  added_ = false;
 }
 
 void FittedFilter::update_noise(const CoverageEvidence& evidence) {
@@ -110,13 +110,13 @@ FilterReport FittedFilter::report() {
 }
 
 std::string FittedFilter::state() const {
-  return to_bytes(mixture_.state(), noise_, sought_, from_body_.dofs, from_body_.landmarks.in_world,
+  return to_bytes(mixture_.state(), noise_, added_, from_body_.dofs, from_body_.landmarks.in_world,
                   from_body_.landmarks.about_root);
 }
 
 void FittedFilter::restore(std::string_view state) {
   MixtureFilter::State mixture;
-  check(from_bytes(state, mixture, noise_, sought_, from_body_.dofs, from_body_.landmarks.in_world,
+  check(from_bytes(state, mixture, noise_, added_, from_body_.dofs, from_body_.landmarks.in_world,
                    from_body_.landmarks.about_root) &&
             (noise_.empty() || noise_.size() == fine_->cameras().size()),
         "FittedFilter: not a state of it");

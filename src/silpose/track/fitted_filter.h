@@ -1,5 +1,5 @@
-// FittedFilter: the mixture of fitted hypotheses as a PoseFilter: prepares what was seen, weighs it by how noisy it
-// proves to be, and tells the estimate and its spread.
+// FittedFilter: the mixture of fitted hypotheses as a PoseFilter: prepares the observations, weighs them by their
+// estimated noise, and reports the estimate and its spread.
 // Threads: as PoseFilter.
 #pragma once
 
@@ -43,7 +43,7 @@ class FittedFilter final : public PoseFilter {
   BodyError body_error_;
   EvidenceKind evidence_;
   BodyError::Variance from_body_;  // of the last estimate
-  bool sought_ = false;            // hypotheses were added since the last step
+  bool added_ = false;             // hypotheses were added since the last step
   std::vector<double> noise_;      // [C]; empty until the first step
 };
 

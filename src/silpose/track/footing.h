@@ -1,4 +1,4 @@
-// Footing: what stands on the floor does not slide. Points of the body that are low and slow at two consecutive poses
+// Footing: what rests on the floor does not slide. Points of the body that are low and slow in two consecutive poses
 // are tied to each other.
 // Threads: functions without state.
 #pragma once
@@ -17,8 +17,8 @@ struct Foothold {
   double weight = 0;  // metres^-2; those of one bone add up to no more than one foothold's
 };
 
-// Which of `points`, all that may touch the floor, stand from one pose to the next, `dt_s` later: none where one of
-// them is well below the floor, which then is not where it is said to be.
+// Which of `points`, all that may touch the floor, rest on it from one pose to the next, `dt_s` later: none where one
+// of them is well below the floor, whose height is wrong then.
 [[nodiscard]] std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMotion& motion,
                                               const PointMotion& next, double dt_s);
 

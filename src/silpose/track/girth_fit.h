@@ -15,7 +15,7 @@ namespace silpose {
 
 struct GirthFit {
   Eigen::VectorXd girths;      // [G] body/girth.h
-  Eigen::VectorXd deviations;  // [G] of what is not known of them, all else given
+  Eigen::VectorXd deviations;  // [G] of their uncertainty, all else given
 };
 
 // From `start` [G]. `poses` [T] of [D] are of the girths' body; evidence [T].

@@ -20,7 +20,7 @@ namespace {
 // All candidates are fitted at these; the best of each heading at the finer ones.
 constexpr FitStage kCoarseStages[] = {{Blur::k32, 3}, {Blur::k16, 4}};
 constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}};
-constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};  // the better ones go on to the second
+constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};  // the better ones advance to the second
 constexpr FitStage kDistantStages[] = {{Blur::k8, 6}, {Blur::k4, 8}};
 constexpr uint64_t kDistantStream = std::numeric_limits<uint64_t>::max();  // of random numbers, and those below
 // E of a start that leaves nothing to explain; and how far a variant must be from its origin to be worth a fit, metres.
@@ -52,7 +52,7 @@ int heading_sector(const Skeleton& skeleton, const Eigen::VectorXd& pose) {
   return turn ? static_cast<int>(std::lround(wrap_angle(pose[*turn]) / (kPi / 4)) + 8) % 8 : 0;
 }
 
-// Front and back look alike in a silhouette. Where nothing else tells, a person before a camera faces it: 1 when the
+// Front and back look alike in a silhouette. Without other evidence, a person in front of a camera faces it: 1 when the
 // root does, -1 when its back does.
 double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {
   const Rigid3 root = body.skeleton.forward_kinematics(pose).front();
@@ -70,7 +70,7 @@ struct Sight {
   const CoverageLikelihood& likelihood;
   const Plausibility& plausibility;
   const CoverageEvidence& evidence;
-  Eigen::Vector3d eye;  // of the first camera with a say
+  Eigen::Vector3d eye;  // of the first camera that is used
 
   [[nodiscard]] const BodyModel& body() const { return likelihood.body(); }
 };
@@ -207,7 +207,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   const Skeleton& skeleton = body.skeleton;
   CoverageEvidence evidence = likelihood.prepare(observations, Blur::k32, Blur::k2, options.evidence);
   const std::optional<size_t> seen = evidence.first_seen();
-  check(seen.has_value(), "initialise: no camera has a say");
+  check(seen.has_value(), "initialise: no camera found anything");
   const PinholeCamera& camera = likelihood.cameras()[*seen];
 
   const StateBatch placed = place_on_mask(body, camera, observations[*seen], candidates);
@@ -236,7 +236,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   fit_all(sight, kFineStages, mirrored);
   std::ranges::move(mirrored, std::back_inserter(starts));
 
-  // How good a fit can be tells how much the differences between fits mean. While poses are sought outlines are taken
+  // The quality of the best fit shows how much the differences between fits mean. During the search, outlines are taken
   // for no better than exact masks have them.
   CoverageLikelihood::Scratch scratch(likelihood);
   std::vector<Eigen::VectorXd> poses;

@@ -1,6 +1,6 @@
 // KeypointSides: whether a network exchanged a body's left and right. A network sees each image by itself. From behind,
 // or from the side, it may exchange the sides for some frames. It then sees the body mirrored in depth: the line across
-// hips and shoulders points the other way in the image, and the same way in depth. A body does not turn half round
+// hips and shoulders points the other way in the image, and the same way in depth. A body does not turn by 180 degrees
 // within a tenth of a second. So the line is tracked over time, and each frame's line is compared with it and with its
 // mirror image. Based on: a hidden Markov model of two states (references.bib: rabiner1989). Threads: values and
 // functions without state.

@@ -57,7 +57,7 @@ TEST(KeypointSides, FindsARunOfExchangedFrames) {
 }
 
 // A whole turn in two seconds.
-TEST(KeypointSides, LeavesWhoeverTurnsAlone) {
+TEST(KeypointSides, LeavesATurningBodyUnchanged) {
   std::vector<Keypoints3D> frames;
   Rng rng(2, 0, 0);
   for (int t = 0; t < 60; ++t) frames.push_back(facing(2 * kPi * t / 60.0 + 0.1 * rng.normal()));
@@ -77,7 +77,7 @@ TEST(KeypointSides, JudgesEachStretchByItself) {
   for (int t = 0; t < 30; ++t) frames.emplace_back();
   const Judged judged = judge(frames);
   for (size_t t = 0; t < frames.size(); ++t) {
-    if (t == 49) continue;  // seen from the end it is the first of its kind, and not believed yet
+    if (t == 49) continue;  // seen from the end it is the first of its kind, and not trusted yet
     EXPECT_EQ(judged.clip[t] > kExchanged, (t >= 40 && t < 50) || (t >= 135 && t < 150)) << t;
   }
 }
@@ -103,7 +103,7 @@ TEST(KeypointSides, IgnoresWhatIsNotFinite) {
   EXPECT_FALSE(line_across(broken).has_value());
 }
 
-// Only a clip as a whole can tell that its first frames were the wrong ones.
+// Only the whole clip shows that its first frames were the wrong ones.
 TEST(KeypointSides, OfAClipTheLongerPartIsRight) {
   std::vector<Keypoints3D> frames;
   frames.reserve(100);

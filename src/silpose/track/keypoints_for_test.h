@@ -12,7 +12,7 @@
 namespace silpose {
 
 // make_test_body() with hips and shoulders: joints right_thigh, left_thigh, right_upper_arm and left_upper_arm, which
-// do not move by themselves. DOF and mesh are the same. Its silhouette hardly tells front from back.
+// do not move by themselves. DOF and mesh are the same. Its silhouette hardly distinguishes front from back.
 inline BodyModel make_sided_body() {
   BodyModel body = make_test_body();
   std::vector<Joint> joints(body.skeleton.joints().begin(), body.skeleton.joints().end());
@@ -31,7 +31,7 @@ inline BodyModel make_sided_body() {
 }
 
 // The keypoints of a pose, in the image and in space. Where the sides are `exchanged` the network takes left for right
-// and sees the body mirrored in depth. REQUIRES: the observation has its box; the whole body is before the camera.
+// and sees the body mirrored in depth. REQUIRES: the observation has its box; the whole body is in front of the camera.
 inline void add_keypoints(const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose,
                           Observation& seen, bool exchanged = false) {
   const auto names = landmark_names(body);

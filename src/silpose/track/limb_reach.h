@@ -1,4 +1,4 @@
-// Reaching with a limb: the angles that bring its joints and its end to where they are wanted.
+// Reaching with a limb: the angles that bring its joints and its end to target positions.
 // Based on: inverse kinematics by damped Gauss-Newton (references.bib: nocedal2006).
 // Threads: functions without state.
 #pragma once

@@ -17,7 +17,7 @@ std::vector<int> limb_of_joint(const Skeleton& skeleton, std::vector<Limb>& limb
   for (const Joint& joint : joints) {
     if (joint.parent_idx >= 0) ++num_children[joint.parent_idx];
   }
-  // Parents come first, so one pass from the end tells whether a subtree branches.
+  // Parents come first, so one pass from the end shows whether a subtree branches.
   std::vector<bool> branches(joints.size(), false);
   for (size_t j = joints.size(); j-- > 0;) {
     if (num_children[j] > 1) branches[j] = true;

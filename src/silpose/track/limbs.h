@@ -27,14 +27,14 @@ std::vector<Limb> limbs_of(const Skeleton& skeleton);
 // every DOF once.
 std::vector<std::vector<int>> limb_blocks(const Skeleton& skeleton);
 
-// Limbs whose DOF have the same names but for a leading right_ or left_: pairs of indices into `limbs`.
+// Limbs whose DOF have the same names except for a leading right_ or left_: pairs of indices into `limbs`.
 std::vector<std::pair<size_t, size_t>> alike_limbs(const Skeleton& skeleton, std::span<const Limb> limbs);
 
 // The angles of two alike limbs, exchanged in a pose [D].
 void exchange(std::span<double> pose, const Limb& a, const Limb& b);
 
 // The pose [D] with the angles of each pair of alike limbs exchanged, one pair at a time and then all at once. From the
-// side a silhouette hardly tells which leg is which.
+// side a silhouette hardly distinguishes the legs.
 std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose);
 
 // The pose with a limb's segments reflected in the planes that face `eye`: first segment, the others, all of them.
@@ -43,7 +43,7 @@ std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::
 std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Limb& limb, std::span<const double> pose,
                                                 const Eigen::Vector3d& eye);
 
-// The pose with the limb's DOF drawn anew: near the pose, or anywhere within limits, each with probability 1/2.
+// The pose with the limb's DOF drawn at random: near the pose, or anywhere within limits, each with probability 1/2.
 std::vector<double> random_limb(const Skeleton& skeleton, const Limb& limb, std::span<const double> pose, Rng& rng);
 
 // Another pose, and which limbs (indices) it differs in.

@@ -1,9 +1,9 @@
 // MixtureFilter: a few hypotheses, each an iterated extended Kalman filter whose measurement step is a fit of the
-// silhouette. They are predicted, fitted, weighed and killed as particles are; what a silhouette cannot tell (which leg
-// is in front, whether a forearm points at the camera or away) gives new ones.
+// silhouette. They are predicted, fitted, weighed and killed as particles are; ambiguities of a silhouette (which leg
+// is in front, whether a forearm points at the camera or away) give new ones.
 //
 // One step: predict at constant velocity; fit each hypothesis; try other limbs for the best two; weigh by evidence;
-// merge those that came together; keep the best K.
+// merge those that converged; keep the best K.
 // Based on: iterated extended Kalman filter (references.bib: bell1993), kinematic jumps (sminchisescu2003).
 // Threads: one thread per filter; steps use all cores inside and give the same result on any number.
 #pragma once
@@ -26,13 +26,13 @@ struct MixtureOptions {
   double acceleration = 1.25;    // times motion/noise.h's acceleration_deviation
   double rest_weight = 1;        // plausibility.h: holds what a silhouette does not show
   double jump_log_prior = -6;    // log-probability of a hypothesis that jumped
-  double merge_distance = 0.05;  // metres: hypotheses whose every joint is nearer are one
+  double merge_distance = 0.05;  // metres: hypotheses with all joints nearer than this are merged
   uint64_t seed = 1;
 };
 
 class MixtureFilter {
  public:
-  // `fine` is fitted, `coarse` ranks candidates: two meshes of the same body before the same cameras.
+  // `fine` is fitted, `coarse` ranks candidates: two meshes of the same body in front of the same cameras.
   MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine, std::shared_ptr<const CoverageLikelihood> coarse,
                 std::shared_ptr<const Plausibility> plausibility, const MixtureOptions& options);
 
@@ -49,7 +49,7 @@ class MixtureFilter {
   // Best first, weights normalised.
   [[nodiscard]] std::span<const GaussianComponent> hypotheses() const { return hypotheses_; }
 
-  // What another filter of the same options and body goes on from, as this one would.
+  // State from which another filter with the same options and body continues exactly as this one would.
   // Errors: restore() throws std::invalid_argument for hypotheses of another size.
   struct State {
     std::vector<GaussianComponent> hypotheses;

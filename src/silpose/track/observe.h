@@ -1,4 +1,4 @@
-// From what segment found to what the tracker is told.
+// From segmentations to the tracker's observations.
 // Threads: functions without state.
 #pragma once
 
@@ -18,7 +18,7 @@ Observation observation_from(Segmentation segmentation);
 // A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm.
 inline constexpr double kLeastTrust = 0.3;
 
-// Whether any camera saw something that is trusted enough to track by.
+// Whether any camera saw something that is trusted enough for tracking.
 bool is_usable(const Observation& observation);
 bool any_is_usable(std::span<const Observation> observations);
 

@@ -1,6 +1,6 @@
 // What a track leaves open, in words: joints whose angles are doubtful for a while, frames in which the network took
-// left for right, and where a second pose that faces elsewhere, or has its legs exchanged, is about as likely. Threads:
-// functions without state.
+// left for right, and where a second pose that faces elsewhere, or has its legs exchanged, is about equally likely.
+// Threads: functions without state.
 #pragma once
 
 #include <span>

@@ -1,5 +1,6 @@
-// Poses that are far from one another and yet end where a picture shows limbs: two alike limbs that took each other's
-// part, and a body that is turned. From aslant neither is found limb by limb, as everything in between fits worse.
+// Poses that are far from one another and yet explain where a picture shows limbs: two symmetric limbs that were
+// exchanged, and a body that is turned. From an oblique view neither is found limb by limb, as everything in between
+// fits worse.
 // Based on: kinematic jump processes (references.bib: sminchisescu2003).
 // Threads: functions without state.
 #pragma once

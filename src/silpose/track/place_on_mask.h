@@ -1,4 +1,4 @@
-// Where a body must stand to cover what is seen.
+// Where a body must be to cover an observed mask.
 // Threads: a function without state; uses all cores and gives the same result on any number.
 #pragma once
 

@@ -1,7 +1,7 @@
 // Plausibility: what is known of a pose before any picture: joints stay within their limits and near rest, the body
 // does not pass through itself, and nothing of it lies just below the floor y = 0 (where any point lies deep below, the
-// floor is elsewhere, and nothing is pushed). Found from mesh and skeleton of any body.
-// All of it is soft: least squares, as a fit of the silhouette takes it. Threads: constant after construction.
+// floor is assumed to be elsewhere, and nothing is pushed). Derived from mesh and skeleton of any body.
+// All of it is soft: least squares, as the fit of the silhouette uses. Threads: constant after construction.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,8 +16,8 @@ namespace silpose {
 
 // How strongly poses are held near rest.
 struct RestPull {
-  double weight = 1;             // 1 for a single pose, less for one of many that are alike
-  bool directions_seen = false;  // of limbs, by keypoints: what is measured is held less (motion/noise.h)
+  double weight = 1;             // 1 for a single pose, less for one of many similar ones
+  bool directions_seen = false;  // of limbs, by keypoints: what is measured is constrained less (motion/noise.h)
 };
 
 class Plausibility {

@@ -1,4 +1,4 @@
-// The one pose that a weighted particle set stands for.
+// The one pose that represents a weighted particle set.
 // Threads: functions without state.
 #pragma once
 

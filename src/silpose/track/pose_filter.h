@@ -1,6 +1,6 @@
 // PoseFilter: what a tracker drives, frame by frame: a set of weighted poses that follows the observations.
 //
-// Contract: start() before anything else, and again after losing the subject. step() takes what was seen; coast() is
+// Contract: start() before anything else, and again after losing the subject. step() takes the observations; coast() is
 // for an instant without a usable observation. After each, particles() holds states whose first D columns are poses
 // within the limits, estimate() one pose made of them, and spread() how far the truth may be from it. The same seed and
 // calls give the same states on any number of threads.
@@ -38,10 +38,10 @@ class PoseFilter {
   // Starts over around poses, best first; a filter may take the first alone. REQUIRES: at least one.
   virtual void start(std::span<const StartingPose> starts) = 0;
 
-  // Takes poses found elsewhere into account from the next step on. A filter that cannot use them leaves them.
+  // Takes poses found elsewhere into account from the next step on. A filter that cannot use them ignores them.
   virtual void add(std::span<const StartingPose> starts) { (void)starts; }
 
-  // Shapes: one observation a camera, at least one with a say; `dt_s` seconds since the last call.
+  // Shapes: one observation per camera, at least one of them usable; `dt_s` seconds since the last call.
   virtual FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) = 0;
   virtual FilterReport coast(double dt_s) = 0;
 
@@ -51,14 +51,14 @@ class PoseFilter {
   // Outline noise that was found, in units of pixel_unit^3 [C]; empty where a filter does not look.
   [[nodiscard]] virtual std::vector<double> noise() const { return {}; }
 
-  // What another filter of the same options, body and cameras goes on from, as this one would.
+  // State from which another filter with the same options, body and cameras continues exactly as this one would.
   // Errors: restore() throws std::invalid_argument for what is no such state.
   [[nodiscard]] virtual std::string state() const = 0;
   virtual void restore(std::string_view state) = 0;
 };
 
 // What filters compare with: renderers of the tracker's level of detail, one a camera, for those that sample; a fine
-// and a coarse mesh for those that fit, and what they know before any picture. All of the same body before the same
+// and a coarse mesh for those that fit, and the priors that these use. All of the same body in front of the same
 // cameras.
 struct Likelihoods {
   std::vector<std::shared_ptr<const BatchRenderer>> renderers;

@@ -20,7 +20,7 @@ namespace silpose {
 
 class SamplingFilter {
  public:
-  // `free_dofs` [D] tells which DOF move. `options` are resolved, and copied. The likelihood outlives the filter.
+  // `free_dofs` [D] says which DOF move. `options` are resolved, and copied. The likelihood outlives the filter.
   SamplingFilter(const TrackerOptions& options, const SilhouetteLikelihood& likelihood, std::vector<bool> free_dofs,
                  uint64_t seed);
 
@@ -28,8 +28,8 @@ class SamplingFilter {
   void start(std::span<const double> pose);
 
   // `held` [D]: where the DOF that do not move are now.
-  // `recognised` [K, D]: poses that a network sees; particles that are drawn anew come from them. K = 0: from around
-  // the estimate.
+  // `recognised` [K, D]: poses that a network sees; regenerated particles are drawn from them. K = 0: from around the
+  // estimate.
   FilterReport step(const Evidence& evidence, const StateBatch& recognised, std::span<const double> held, double dt_s,
                     StepSeconds& seconds);
   FilterReport coast(double dt_s);
@@ -37,7 +37,7 @@ class SamplingFilter {
   [[nodiscard]] const ParticleSet& particles() const;
   [[nodiscard]] std::vector<double> estimate() const;  // [D]
 
-  // What another of the same options goes on from; nothing before start().
+  // State from which another one with the same options continues; nothing before start().
   // Errors: restore() throws std::invalid_argument for particles of another size.
   [[nodiscard]] std::optional<FilterState> state() const;
   void restore(std::optional<FilterState> state);

@@ -30,8 +30,8 @@ struct StepReport {
   std::vector<Eigen::Vector3d> landmark_spread_about_root;  // [J + E] of their places relative to the root joint
   double effective_sample_size = 0;
   double visual_accuracy = 0;  // intersection over union in the first camera's image; 0 when coasted
-  // What is open: the probability that the network exchanged left and right (of the camera where it is highest), and
-  // the weight of hypotheses that face the other way, or have the legs exchanged.
+  // Ambiguities: the probability that the network exchanged left and right (of the camera where it is highest), and the
+  // weight of hypotheses that face the other way, or have the legs exchanged.
   double exchanged = 0, turned = 0, crossed = 0;
   std::vector<Trust> trust;    // [C]
   std::vector<Mask> observed;  // [C] the masks that were used

@@ -21,17 +21,16 @@ struct ClipInstant {
   std::vector<Observation> observations;  // [C]
 };
 
-// `options` for a pass over a clip that is only to find the basin: online, and on a mesh that is no finer than that
-// needs.
+// `options` for a pass over a clip that only has to find the basin: online, and on a mesh no finer than that requires.
 TrackerOptions options_of_pass(const TrackerOptions& options);
 
-// Told after each instant; tracking ends early when it returns false.
+// Called after each instant; tracking ends early when it returns false.
 using ClipProgress = std::function<bool(size_t instants_done, size_t instants_total)>;
 
-// What lets the tracking of a clip go on where an earlier call, with the same arguments, was stopped.
+// What lets the tracking of a clip resume where an earlier call, with the same arguments, was stopped.
 struct ClipResume {
-  std::string state;  // which that call told last; empty: from the start
-  // Called after each instant of each pass, and when tracking ends early. `state()` tells what is done so far.
+  std::string state;  // which that call last gave to keep(); empty: from the start
+  // Called after each instant of each pass, and when tracking ends early. `state()` is the progress so far.
   std::function<void(const std::function<std::string()>& state)> keep;
 };
 

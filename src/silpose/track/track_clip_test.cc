@@ -136,7 +136,7 @@ TEST_F(ClipTest, StopsWhenAskedAndTellsGrowingProgress) {
   EXPECT_TRUE(track_clip(accurate(), clip(6, 0, 0), [](size_t, size_t) { return false; }).empty());
 }
 
-// Stopped after any instant of any pass, and while smoothing, another call goes on to the same reports.
+// Stopped after any instant of any pass, and while smoothing, another call resumes and gives the same reports.
 TEST_F(ClipTest, GoesOnFromWhereItWasStoppedBitForBit) {
   const auto instants = clip(6, 3, 4);
   for (const bool smooth : {true, false}) {
@@ -146,7 +146,7 @@ TEST_F(ClipTest, GoesOnFromWhereItWasStoppedBitForBit) {
     ASSERT_EQ(whole.size(), 6u);
     for (const int stop : smooth ? std::vector<int>{1, 3, 8, 12, 17, 19} : std::vector<int>{1, 4}) {
       std::string state;
-      ClipResume resume{.state = {}, .keep = [&](const auto& told) { state = told(); }};
+      ClipResume resume{.state = {}, .keep = [&](const auto& get_state) { state = get_state(); }};
       int asked = 0;
       const auto stopped = track_clip(
           options, instants, [&](size_t, size_t) { return ++asked < stop; }, resume);
@@ -172,7 +172,7 @@ TEST_F(ClipTest, GoesOnFromWhereItWasStoppedBitForBit) {
 
 TEST_F(ClipTest, RefusesAStateOfAnotherClip) {
   std::string state;
-  const ClipResume keep{.state = {}, .keep = [&](const auto& told) { state = told(); }};
+  const ClipResume keep{.state = {}, .keep = [&](const auto& get_state) { state = get_state(); }};
   track_clip(
       accurate(), clip(4, 9, 9), [&](size_t, size_t) { return state.empty(); }, keep);
   EXPECT_THROW(track_clip(accurate(), clip(3, 9, 9), {}, {.state = state, .keep = {}}), std::invalid_argument);
@@ -235,7 +235,7 @@ TEST_F(ExchangedClipTest, GoesOnFromWhereItWasStoppedBitForBit) {
     ASSERT_EQ(whole.size(), clip_.size());
     for (const int stop : smooth ? std::vector<int>{5, 14, 27} : std::vector<int>{3, 5, 7, 8}) {
       std::string state;
-      ClipResume resume{.state = {}, .keep = [&](const auto& told) { state = told(); }};
+      ClipResume resume{.state = {}, .keep = [&](const auto& get_state) { state = get_state(); }};
       int asked = 0;
       const auto stopped = track_clip(
           options, clip_, [&](size_t, size_t) { return ++asked < stop; }, resume);

@@ -38,11 +38,11 @@ class Tracker {
   // Errors: throws std::runtime_error where an image has another size than the first.
   StepReport step(const Frame& frame);
 
-  // Silhouettes of the estimate, moved on at its speed for another `dt_s`, on a coarse mesh: [C]. Empty before the
-  // start and while it coasts.
+  // Silhouettes of the estimate, extrapolated at its velocity by `dt_s`, on a coarse mesh: [C]. Empty before the start
+  // and while it coasts.
   [[nodiscard]] std::vector<Mask> expected(double dt_s) const;
 
-  [[nodiscard]] const TrackerOptions& options() const;  // with everything unset filled in
+  [[nodiscard]] const TrackerOptions& options() const;  // with unset values filled in
   // The current particles [N, D' >= D] and their log weights [N]. Those of fitted hypotheses are poses, then velocities
   // per second: D' = 2 D.
   [[nodiscard]] const StateBatch& particles() const;
@@ -51,8 +51,8 @@ class Tracker {
   // empty.
   [[nodiscard]] std::vector<double> noise() const;
 
-  // What another tracker of the same options goes on from, as this one would: the same reports, bit for bit, from the
-  // same program. What step(frame) learned of the background is not in it.
+  // State from which another tracker with the same options continues exactly as this one would: the same reports, bit
+  // for bit, from the same program. What step(frame) learned of the background is not in it.
   // Errors: restore() throws std::invalid_argument for what is no such state.
   [[nodiscard]] std::string state() const;
   void restore(std::string_view state);

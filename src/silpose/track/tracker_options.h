@@ -1,4 +1,4 @@
-// TrackerOptions: everything one can ask of a tracker, and the presets.
+// TrackerOptions: all options of a tracker, and the presets.
 // Threads: a value.
 #pragma once
 
@@ -21,8 +21,8 @@ enum class Estimate { kMean, kMode, kCluster };
 struct TrackerOptions {
   std::shared_ptr<const BodyModel> body;  // full mesh; the tracker makes its own level of detail
   std::vector<PinholeCamera> cameras;     // [C]
-  // How far the subject's size may be from the body's, one standard deviation, relative. One camera cannot tell size
-  // from distance, so it goes into the spread; several can.
+  // How far the subject's size may be from the body's, one standard deviation, relative. One camera cannot separate
+  // size from distance, so it is added to the spread; several can.
   double size_deviation = 0;
   std::string preset = "default";  // "default", "accurate" or "thesis"; fills what is left unset below
   // The fitted mixture; unset where a sampling filter is asked for.
@@ -36,8 +36,8 @@ struct TrackerOptions {
   std::optional<double> sigma_deg;             // of a typical rotational DOF per 1/30 s; the others scale with it
   std::optional<std::string> resampling;       // filter/resampling.h
   double resample_below = 1;                   // of n_eff / N; 1: every step
-  std::optional<double> regenerate;            // fraction of the particles that is drawn anew, by the comb
-  std::optional<std::string> regenerate_from;  // "random": about the estimate; "network": about what it recognises
+  std::optional<double> regenerate;            // fraction of the particles that the comb regenerates
+  std::optional<std::string> regenerate_from;  // "random": about the estimate; "network": about the poses it recognises
   std::optional<std::string> metric;           // "pixel-count" or "coverage" (likelihood/silhouette_likelihood.h)
   std::optional<double> sharpness;
   std::optional<Estimate> estimate;
@@ -45,10 +45,10 @@ struct TrackerOptions {
   std::optional<int> lod_vertices;  // of the mesh that is compared, smoothed clips: in the end; 0: the body's own
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
-  // What poses are compared by while they are tracked, and whether starts go by keypoints, too, where there are any.
+  // The evidence that poses are compared by during tracking; also whether starts use keypoints, where there are any.
   EvidenceKind evidence = EvidenceKind::kSilhouette;
   bool landmarks = false;
-  // Candidates for the start, and for where the fitted mixture seeks the pose anew; absent: the common poses.
+  // Candidates for the start, and for re-initialising the fitted mixture; absent: the common poses.
   std::shared_ptr<const Proposal> proposal;
 
   // Errors: throws std::invalid_argument that names the option and its value.
@@ -61,10 +61,11 @@ struct TrackerOptions {
 // What starts are compared by.
 EvidenceKind start_evidence(const TrackerOptions& options);
 
-// Candidates for the start: fitted to landmarks where these count, else the options' proposal, else the common poses.
+// Candidates for the start: fitted to landmarks where these are used, else the options' proposal, else the common
+// poses.
 std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options, size_t camera_idx);
 
-// The camera whose observation starts go by: the first one with keypoints, else the first. Shapes: one observation per
+// The camera whose observation starts use: the first one with keypoints, else the first. Shapes: one observation per
 // camera.
 size_t start_camera(std::span<const Observation> observations);
 

@@ -95,7 +95,7 @@ TEST_P(TrackerTest, LimitsAlwaysHold) {
   }
 }
 
-// Stopped while waiting, tracking or coasting, another tracker goes on as the first would have.
+// Stopped while waiting, tracking or coasting, another tracker continues as the first would have.
 TEST_P(TrackerTest, GoesOnFromItsStateBitForBit) {
   const auto seen = [&](int t) { return t == 0 || (t >= 4 && t < 6) ? nothing() : observe(t); };
   constexpr int kSteps = 8;
@@ -343,7 +343,7 @@ TEST_F(KeypointTrackerTest, TracksByKeypointsAloneAndCoastsWithoutThem) {
 }
 
 // Started two metres away, particles about the estimate see nothing; those about what a network recognises are there.
-// The thesis' filters make anew what concerns the pose alone: there it is the pose that starts wrong.
+// The thesis' filters regenerate only the pose: there it is the pose that starts wrong.
 TEST_F(KeypointTrackerTest, RegeneratesFromWhatTheNetworkRecognises) {
   // Metres that the furthest joint is off after five frames. Seeds 1 to 30 gave 0.02 to 0.33 against 2.05 to 2.07, the
   // thesis 0.01 to 0.08 against 0.42 to 1.00.

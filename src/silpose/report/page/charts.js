@@ -25,7 +25,7 @@ function rangeOf({series, range, least = 0}) {
   return [low - room, high + room];
 }
 
-// What a screen reader tells of a chart.
+// What a screen reader says about a chart.
 function chartLabel({title, unit = "", places, series}) {
   const parts = series.map(({name, values, half}) => {
     const seen = known(values);

@@ -5,7 +5,7 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const count = data.state.length;
 const byId = id => document.getElementById(id);
 
-// {step, deltas} as told in report_data.h: a number a step, NaN for a gap.
+// {step, deltas} as described in report_data.h: one number per step, NaN for a gap.
 function unpack({step, deltas}) {
   const values = new Float64Array(deltas.length);
   let last = 0;

@@ -102,7 +102,7 @@ function writeHead() {
   writePlaces(places);
   const downloads = byId("downloads");
   downloads.hidden = !data.downloads.length;
-  element("span", downloads, "Files beside this page:", "soft");
+  element("span", downloads, "Files next to this page:", "soft");
   for (const [file, what] of data.downloads) {
     const link = element("a", downloads, file);
     link.href = encodeURIComponent(file);

@@ -5,7 +5,7 @@ function writeQuality() {
   const parent = byId("quality");
   addChart(parent, {title: "Visual accuracy (IoU)", range: [0, 1], places: 3,
                     series: [{values: accuracy, everywhere: true}]});
-  // Of one hypothesis, and of a smoothed clip, the size is 1 throughout and tells nothing.
+  // Of one hypothesis, and of a smoothed clip, the size is 1 throughout and carries no information.
   const most = largest(known(sampleSize));
   if (most > 1) {
     addChart(parent, {title: "Effective sample size", range: [0, most * 1.05], places: most < 100 ? 1 : 0,
