@@ -1,4 +1,4 @@
-// Tracks the person in a clip: track_video BODY.body CALIBRATION.toml VIDEO. Prints one line a frame.
+// Tracks the person in a clip: track_video BODY.body CALIBRATION.toml VIDEO. Prints one line per frame.
 #include <fmt/format.h>
 #include <silpose/silpose.h>
 

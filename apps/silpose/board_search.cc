@@ -48,7 +48,7 @@ Result<BoardSearch> search_board(const Board& board, const std::vector<std::stri
   BoardSearch search;
   if (floor_s && video->fps_assumed() && !fps) {
     search.warnings.push_back(
-        fmt::format("{}: carries no frame rate, {} a second assumed", video->name(), video->fps()));
+        fmt::format("{}: has no frame rate, {} frames per second assumed", video->name(), video->fps()));
   }
   for (size_t c = 0; c < videos.size(); ++c) {
     const int camera = static_cast<int>(c);

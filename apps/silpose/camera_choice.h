@@ -48,7 +48,7 @@ struct PictureSize {
   std::optional<double> focal_mm35 = {};  // by the clip's metadata
 };
 
-// One camera a picture size, in order, assumed where there is no file; without sizes all that the file, or
+// One camera per picture size, in order, assumed where there is no file; without sizes all that the file, or
 // --camera-name, names. Errors: those of the file; a name that is not in it; another number of cameras; a camera
 // calibrated for another size. Throws UsageError for options that do not go together.
 Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<PictureSize>& sizes);

@@ -58,7 +58,7 @@ bool Console::update(std::string_view what, int64_t done, int64_t total) {
   const double elapsed = seconds_between(start_, now);
   if (done > first_done_ && elapsed > 1) {
     const double rate = static_cast<double>(done - first_done_) / elapsed;
-    line += fmt::format(", {:.1f} a second", rate);
+    line += fmt::format(", {:.1f} per second", rate);
     if (total > done) line += fmt::format(", {} left", duration_text(static_cast<double>(total - done) / rate));
   }
   if (terminal_) {

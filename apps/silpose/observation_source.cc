@@ -167,7 +167,7 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
   const Video& opened = *source.video_;
   if (opened.fps_assumed() && !options.default_fps) {
     source.warnings_.push_back(
-        fmt::format("{}: carries no frame rate, {} a second assumed", opened.name(), opened.fps()));
+        fmt::format("{}: has no frame rate, {} frames per second assumed", opened.name(), opened.fps()));
   }
   // A quarter of a frame's time makes up for rounded time stamps.
   const double margin_s = 0.25 / opened.fps();

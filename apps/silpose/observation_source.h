@@ -1,4 +1,4 @@
-// ObservationSource: from the videos and the options of a command to one observation a camera and instant.
+// ObservationSource: from the videos and the options of a command to one observation per camera and instant.
 // The next frame of a recording is read, and its segmentation is begun, while the last one is tracked.
 // Threads: the main thread only; segmentation itself uses all cores.
 #pragma once
@@ -23,9 +23,9 @@ namespace silpose::app {
 struct InputOptions {
   std::vector<std::string> videos;
   std::string segmenter = "auto";
-  std::vector<std::string> masks, backgrounds, regions, garbage_masks;  // one for all, or one a camera
+  std::vector<std::string> masks, backgrounds, regions, garbage_masks;  // one for all, or one per camera
   std::string key_colour = "auto", depth_range;
-  std::vector<std::string> depths;  // one a camera
+  std::vector<std::string> depths;  // one per camera
   int grow_px = 0;
   std::optional<int> min_blob_px;     // absent: the segmenter's own
   std::optional<double> default_fps;  // 30 and a warning where it is needed and not given

@@ -100,7 +100,7 @@ Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path
   run["warnings"] = finished.warnings;
   run["out"] = finished.options.out;
 
-  outcome.text = fmt::format("{} frames, {} tracked, {} coasted; {:.1f} frames a second\n", tracked.num_frames,
+  outcome.text = fmt::format("{} frames, {} tracked, {} coasted; {:.1f} frames per second\n", tracked.num_frames,
                              summary.frames_tracked, summary.frames_coasted, frames_per_second(tracked));
   if (summary.frames_tracked > 0) {
     outcome.text += fmt::format("visual accuracy {:.3f} \u00b1 {:.3f}\n", summary.visual_accuracy_mean,

@@ -43,7 +43,7 @@ class TrackWriter {
               bool draws_floor);  // fps: of files that need a constant rate
 
   // One frame of masks/ (masks_NAME/ with several cameras), and of the examples that strips() has. Shapes: one
-  // observation a camera.
+  // observation per camera.
   Result<void> add_masks(const Frame& frame, std::span<const Observation> observations);
 
   // From now on add_masks() keeps the confidence of the masks, too, for read_masks().

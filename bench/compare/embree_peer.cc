@@ -1,4 +1,4 @@
-// Embree: the skinned mesh's BVH is refitted or rebuilt for each pose, then one ray a pixel asks whether it hits
+// Embree: the skinned mesh's BVH is refitted or rebuilt for each pose, then one ray per pixel tests whether it hits
 // anything. A pose is one thread's work.
 #include <embree3/rtcore.h>
 #include <fmt/format.h>

@@ -199,7 +199,7 @@ void OpenGlTiles::make_target() {
   glBindRenderbuffer(GL_RENDERBUFFER, target);
   glRenderbufferStorage(GL_RENDERBUFFER, GL_R8, width, height);
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, target);
-  expect(glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE, "no target of one byte a pixel");
+  expect(glCheckFramebufferStatus(GL_FRAMEBUFFER) == GL_FRAMEBUFFER_COMPLETE, "no target of one byte per pixel");
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   pixels_.resize(static_cast<size_t>(width) * static_cast<size_t>(height));
 

@@ -48,7 +48,7 @@ class OpenGlTiles {
   EGLDisplay display_ = EGL_NO_DISPLAY;
   EGLContext context_ = EGL_NO_CONTEXT;
   GLsizei num_indices_ = 0;
-  size_t palette_stride_ = 0;          // bytes a pose
+  size_t palette_stride_ = 0;          // bytes per pose
   std::vector<std::byte> palettes_;    // [tiles, palette_stride_]
   std::vector<ClipFromRest> palette_;  // [J]
   std::vector<uint8_t> pixels_;        // of the target

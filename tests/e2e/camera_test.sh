@@ -1,11 +1,12 @@
-# Without a calibration file the camera is estimated from the person who walks before it, and said so; or assumed.
+# Without a calibration file the camera is estimated from the person who walks in front of it, with a message; or
+# assumed.
 source "$(dirname "$0")/checks.sh"
 
 "$silpose" synth --out truth --motion circle --frames 16 --fps 4 --quiet
 track=(track truth/masks --segmenter masks --fps 4 --init truth/poses.csv --hypotheses 1 --vertices 600 --quiet --json)
 "$silpose" "${track[@]}" --out estimated >estimated.json 2>warnings.txt || fail "an estimated camera: exit $?"
 grep -q 'no camera file: estimated from the subject in 1[0-9] frames: focal length' warnings.txt || fail "nothing says so"
-# A level camera: what goes down in it is how high it stands.
+# A level camera: its translation along y is its height.
 truth_m=$(sed -n 's/^translation = \[[^,]*, \([^,]*\),.*/\1/p' truth/camera.toml)
 expect_at_least "$(number estimated.json camera_estimate height_m mean)" "$(awk "BEGIN { print $truth_m - 0.15 }")" "height, m"
 expect_at_most "$(number estimated.json camera_estimate height_m mean)" "$(awk "BEGIN { print $truth_m + 0.15 }")" "height, m"

@@ -1,6 +1,6 @@
 // Clips as phones and camcorders make them, for the end-to-end tests.
 //   clip_tool KIND IN OUT: the video IN once more as KIND; as shown it is the same, but for
-//   clip_tool boxed IN OUT: a box in the left quarter, larger than who stands in the middle, from frame 20 on.
+//   clip_tool boxed IN OUT: a box in the left quarter, larger than the person in the middle, from frame 20 on.
 //   clip_tool times FILE: "WIDTH HEIGHT FRAMES", then each frame's number and seconds.
 #include <fmt/format.h>
 

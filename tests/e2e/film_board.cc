@@ -1,5 +1,5 @@
-// film_board FOLDER: two cameras film a chessboard of 8x5 corners and 60 mm squares that is carried round and lies on
-// the floor from 1.2 s on, at 25 frames a second: left.mp4, right.mp4, and the cameras as they are, truth.toml.
+// film_board FOLDER: two cameras film a chessboard of 8x5 corners and 60 mm squares that is carried around and lies on
+// the floor from 1.2 s on, at 25 frames per second: left.mp4, right.mp4, and the cameras as they are, truth.toml.
 #include <cstdio>
 #include <filesystem>
 #include <string>

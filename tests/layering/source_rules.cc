@@ -65,7 +65,7 @@ std::string refusal(const Place& from, const Place& to, bool is_test, const Floo
   const auto recording = floors.find(kRecording);
   if (from.project == "silpose" && to.project == "sadb" && recording != floors.end() &&
       own->second < recording->second) {
-    return from.module + " stands below recording and does not see sadb";
+    return from.module + " is below recording and does not see sadb";
   }
   return "";
 }
@@ -115,7 +115,7 @@ std::vector<std::string> include_violations(const fs::path& root, const Floors& 
     if (!std::regex_search(line, match, kInclude)) return;
     const fs::path included = match[1].str();
     const Place from = place_of(file.lexically_relative("src"));
-    if (from.module.empty()) return;  // the umbrella header stands above all modules
+    if (from.module.empty()) return;  // the umbrella header is above all modules
     const bool is_test = file.stem().string().ends_with("_test");
     const std::string reason = refusal(from, place_of(included), is_test, floors);
     if (!reason.empty()) violations.push_back(at(file, number, reason));

@@ -1,5 +1,5 @@
 // The rules of ARCHITECTURE.md that the build does not enforce by itself, over the text of a source tree.
-// Each function returns one line a violation, "file:line: what is wrong"; none: the tree obeys.
+// Each function returns one line per violation, "file:line: what is wrong"; none: the tree obeys.
 // Threads: functions without state.
 #pragma once
 

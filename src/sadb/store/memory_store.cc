@@ -25,7 +25,7 @@ class Series {
     const std::lock_guard lock(mutex_);
     const auto at = first_at_or_after(entry->time_ns);
     if (at != entries_.end() && (*at)->time_ns == entry->time_ns) {
-      // Swapped, so that what stood there is freed after the lock.
+      // Swapped, so that what was there is freed after the lock.
       entries_[static_cast<size_t>(at - entries_.begin())].swap(entry);
     } else {
       entries_.insert(at, std::move(entry));

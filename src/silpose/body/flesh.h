@@ -18,7 +18,7 @@ struct FleshSphere {
   double radius = 0;  // metres; no vertex of the rest mesh lies inside
 };
 
-// Ordered by joint, then by size; a few a bone. Bones without vertices have none.
+// Ordered by joint, then by size; a few per bone. Bones without vertices have none.
 [[nodiscard]] std::vector<FleshSphere> flesh_spheres(const BodyModel& body);
 
 // [J] The middle of each bone's flesh (of the volume, in the rest pose), in its joint's frame; nothing where a bone has

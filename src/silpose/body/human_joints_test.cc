@@ -112,12 +112,12 @@ TEST(HumanJoints, LandmarksAreWherePeopleHaveThem) {
     const auto place = [&](Landmark landmark) { return landmark_place(vertices, landmark, Side::kLeft); };
     // Breadth between the front spines: 224 of 1,770 mm in men, 238 of 1,610 mm in women (dumas2007).
     EXPECT_NEAR(2 * place(Landmark::kFrontSpine).x(), 1.70 * (sex == 0 ? 0.127 : 0.148), 0.033) << sex;
-    // A pelvis stands inclined by 11 degrees, standard deviation 4 (levine1996).
+    // A pelvis is inclined by 11 degrees, standard deviation 4 (levine1996).
     const Vector3d back_to_front = place(Landmark::kFrontSpine) - place(Landmark::kBackSpine);
     EXPECT_NEAR(to_degrees(std::atan2(-back_to_front.y(), back_to_front.z())), 11, 6) << sex;
     // Heights over the floor, shares of stature (winter2009): acromion 0.818.
     EXPECT_NEAR(place(Landmark::kAcromion).y(), 0.818 * 1.70, 0.02) << sex;
-    // The inner malleolus stands higher than the outer.
+    // The inner malleolus is higher than the outer.
     EXPECT_GT(place(Landmark::kMedialMalleolus).y(), place(Landmark::kLateralMalleolus).y()) << sex;
   }
 }
@@ -165,7 +165,7 @@ TEST(HumanJoints, FatDoesNotMoveTheHipsInTheirBones) {
   EXPECT_LT((hip_in_rig(person(0, 0.95)) - hip_in_rig(person(0, 0.5))).norm(), 1e-4);
 }
 
-TEST(HumanJoints, OfABodyFromAnEarlierVersionAreTold) {
+TEST(HumanJoints, OfABodyFromAnEarlierVersionAreRecognised) {
   BodyModel body = build_human(data(), {}).value();
   EXPECT_TRUE(has_present_joint_places(body));
   body.facts.erase("joint_places");

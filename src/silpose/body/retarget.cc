@@ -369,7 +369,9 @@ Result<Retargeted> retarget(const Clip& clip, const BodyModel& body, const Retar
       opens_at_rest(clip) && mean_turn(retargeter.segments(), target_at(0), target_at(1)) > kRestJump;
 
   const double num_samples = static_cast<double>(clip.num_frames()) / clip.fps * options.fps;
-  if (num_samples > kMostFrames) return error("{}: is {:.0f} frames at {} a second", clip.name, num_samples, options.fps);
+  if (num_samples > kMostFrames) {
+    return error("{}: is {:.0f} frames at {} per second", clip.name, num_samples, options.fps);
+  }
   std::vector<double> pose, lowest;
   double sum = 0, count = 0;
   for (const double time : sample_times(clip, out.first_frame_skipped ? 1 : 0, options.fps)) {

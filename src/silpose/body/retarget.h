@@ -1,6 +1,6 @@
 // Retargeting: recorded motion of another skeleton (a motion-capture Clip) to poses of our human.
 // Bodies differ in size, so limb directions are matched, not positions; pelvis, chest and head are matched by how they
-// turn from the clip's rest pose. One damped least-squares solve a frame, started from the frame before.
+// turn from the clip's rest pose. One damped least-squares solve per frame, started from the frame before.
 // Based on: Levenberg-Marquardt with bounds by an active set (references.bib: nocedal2006).
 // Threads: functions without state.
 #pragma once
@@ -37,7 +37,7 @@ struct Retargeted {
 // is missing.
 Result<Retargeted> retarget(const Clip& clip, const BodyModel& body, const RetargetOptions& options = {});
 
-// The joint of a clip (index into `names`) that plays the part of one of ours: "root", "head", "left_thigh", ...
+// The joint of a clip (index into `names`) that corresponds to one of ours: "root", "head", "left_thigh", ...
 // Knows the names of CMU, Mixamo, MakeHuman, Xsens and common exporters, whatever their case, prefix and separators.
 // Besides our joint names, `part` may be "neck", "left_toe", "right_toe", "left_finger", "right_finger".
 std::optional<int> find_part(const std::vector<std::string>& names, std::string_view part);

@@ -1,4 +1,5 @@
-// Which joint of a capture skeleton plays which part: names are cut into a side and a plain word, and looked up.
+// Which joint of a capture skeleton corresponds to which part: names are cut into a side and a plain word, and looked
+// up.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -70,7 +71,8 @@ PlainName plain_name(std::string_view name) {
   return plain;
 }
 
-// Words for each part, the surest first: "hip" and "shoulder" name the limb's joint only where nothing better does.
+// Words for each part, the most specific first: "hip" and "shoulder" name the limb's joint only where nothing better
+// does.
 struct Aliases {
   std::string_view part;
   std::initializer_list<std::string_view> words;

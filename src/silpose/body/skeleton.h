@@ -75,7 +75,7 @@ class Skeleton {
   [[nodiscard]] std::vector<double> denormalise(std::span<const double> npsu) const;
 
  private:
-  // What forward kinematics does, step by step: one entry a DOF in order of application, joints in index order.
+  // What forward kinematics does, step by step: one entry per DOF in order of application, joints in index order.
   struct Step {
     int dof_idx = 0;
     int cardinal = -1;  // 0, 1, 2: the axis is +-x, +-y, +-z; -1: any other

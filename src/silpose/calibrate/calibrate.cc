@@ -21,7 +21,7 @@ constexpr double kUpright = 0.5;       // cosine between the cameras' mean up di
 // A view that the others contradict: moved while the cameras took it, or found wrongly.
 constexpr double kOutlier = 4;     // times the median error
 constexpr double kHarmless = 1;    // pixels: no view with less is
-constexpr double kMisplaced = 20;  // the same before anything is adjusted, when cameras stand only about right
+constexpr double kMisplaced = 20;  // the same before anything is adjusted, when camera poses are only approximate
 
 double rms_of(const Bundle& bundle, const std::vector<Eigen::Vector3d>& points, const BundleView& view) {
   return std::sqrt(view_error(bundle, points, view) / static_cast<double>(points.size()));

@@ -40,14 +40,14 @@ struct CameraCalibration {
   std::vector<PinholeCamera> cameras;  // [C] distortion k1 k2 p1 p2
   std::vector<CameraFit> fits;         // [C]
   double rms_px = 0;                   // of all cameras
-  std::vector<std::string> warnings;   // what makes it doubtful, a line each
+  std::vector<std::string> warnings;   // what makes it doubtful, one line each
 };
 
 // World: where the board lay on the floor at `floor_instant`, the floor is y = 0, the board's middle the origin, and +Z
 // the one of the board's sides that looks most towards the first camera. Without it the first camera is level and
 // 1.5 m above the floor, as default_camera(): a guess, which a warning says.
 // Errors: a camera with fewer than 4 views that differ, or views that do not determine the lens; one that never sees
-// the board together with the others; nobody saw it at `floor_instant`. Each names the camera.
+// the board together with the others; no camera saw it at `floor_instant`. Each names the camera.
 // REQUIRES: a camera at least; with several a board that has one way up.
 Result<CameraCalibration> calibrate_cameras(const Board& board, const std::vector<CameraSightings>& cameras,
                                             std::optional<int64_t> floor_instant);

@@ -103,7 +103,7 @@ TEST(CalibrateTest, CamerasStandWhereTheyStand) {
   const std::vector<PinholeCamera> truth = {lens({0, 1.6, 2.4}, 600, "left"), lens({1.6, 1.4, 1.8}, 640, "middle"),
                                             lens({2.4, 1.5, 0.6}, 580, "right")};
   Rng rng(3);
-  // Carried before each camera in turn: the outer two hardly ever see it together.
+  // Carried in front of each camera in turn: the outer two hardly ever see it together.
   std::vector<Rigid3> places;
   for (const PinholeCamera& camera : truth) {
     const auto more = walk(camera, 16, 0.6, rng);

@@ -15,7 +15,8 @@ namespace silpose {
 inline constexpr double kNearestViews = 0.02;  // of the picture's width: nearer views are redundant
 
 // Views that differ from each other most, as indices in ascending order: at most `most`, no two nearer than `nearest`.
-// `features`: a vector a view; their Euclidean distance is how different two are. The first chosen is the first view.
+// `features`: one vector per view; their Euclidean distance is how different two are. The first chosen is the first
+// view.
 // Source: farthest-point selection (references.bib: gonzalez1985).
 [[nodiscard]] std::vector<size_t> choose_views(const std::vector<Eigen::VectorXd>& features, size_t most,
                                                double nearest);

@@ -16,7 +16,7 @@
 namespace silpose {
 namespace {
 
-// What is unknown of the camera, and of how its person holds himself all the time.
+// What is unknown of the camera, and of the person's posture throughout the clip.
 enum Unknown : Eigen::Index { kLogFocal, kTilt, kRoll, kLogHeight, kReach, kStoop, kLean, kNumUnknowns };
 using Unknowns = Eigen::Matrix<double, kNumUnknowns, 1>;
 using Normal = Eigen::Matrix<double, kNumUnknowns, kNumUnknowns>;
@@ -25,9 +25,9 @@ using Place = Eigen::Vector2d;
 using Residual = Eigen::Vector4d;  // feet x, y and head x, y
 
 // Of cameras in use, and of people who walk: mean and deviation [guesses]. The focal length is relative to the caller's
-// prior, whose deviation comes in place of the 1; the height to a metre; reach is how far before the body's axis the
-// nearest foot is, metres; stoop how much lower than its height a body stands, lean how far the head is off the feet,
-// both in parts of its height.
+// prior, whose deviation comes in place of the 1; the height to a metre; reach is how far in front of the body's axis
+// the nearest foot is, metres; stoop how much lower than its height a body stands, lean how far the head is off the
+// feet, both in parts of its height.
 const Unknowns kPriorMean = (Unknowns() << 0, 0.03, 0, std::log(1.4), 0.22, 0.02, 0).finished();
 const Unknowns kPriorDeviation = (Unknowns() << 1, 0.18, 0.02, 0.4, 0.12, 0.02, 0.03).finished();
 // Extents are taken as medians over a stride, since feet alternate and heads bob with every step: a window every half
@@ -189,7 +189,7 @@ class PersonFit {
   double cost_ = 0;
 };
 
-// How slender a person is who stands upright. REQUIRES: some extents.
+// The slenderness of an upright person. REQUIRES: some extents.
 double least_slenderness(std::span<const PersonExtent> extents) {
   std::vector<double> all;
   for (const PersonExtent& seen : extents) all.push_back(seen.slenderness);

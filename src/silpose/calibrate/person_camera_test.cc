@@ -19,7 +19,8 @@ PinholeCamera camera_at(double focal_px, double height, double tilt_deg) {
   return look_at_camera(640, 480, focal_px, eye, eye + Eigen::Vector3d(0, -std::sin(tilt), -std::cos(tilt)));
 }
 
-// A straight, thin person whose nearest foot is 0.22 m before its axis and who stoops by 2 %, twelve times a second.
+// A straight, thin person whose nearest foot is 0.22 m in front of its axis and who stoops by 2 %, twelve times per
+// second.
 PersonExtent extent_at(const PinholeCamera& camera, double x, double z, double time_s) {
   PersonExtent extent{time_s, camera.project({x, 0.98 * kBodyHeight, z}).value(), {}, 2.5};
   const Eigen::Vector2d axis = camera.project({x, 0, z}).value(), toe = camera.project({x, 0, z + 0.22}).value();

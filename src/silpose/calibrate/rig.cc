@@ -12,8 +12,9 @@ namespace {
 
 constexpr size_t kMostShared = 20;
 
-// Which of the shared instants' ideas of where b stands, seen from a, fits all of them best: the one with the smallest
-// median distance of corners in a's pictures. One board seen head-on or at a slant it is mistaken for cannot spoil it.
+// The pose of b relative to a, of those that single shared instants give, that fits all instants best: with the
+// smallest median distance of corners in a's pictures. A single view of ambiguous tilt, as of a board seen head-on,
+// cannot corrupt it.
 Rigid3 a_from_b(const Board& board, const PinholeCamera& camera_a, const SeenBoards& a, const SeenBoards& b,
                 const std::vector<int64_t>& instants) {
   const std::vector<Eigen::Vector3d> points = board_points(board);

@@ -53,7 +53,7 @@ struct Evaluation {
   [[nodiscard]] std::optional<Figure> find(std::string_view name) const;
 };
 
-// One frame that both sides have: one value a name of figure_names(), nothing where it lacks what it needs.
+// One frame that both sides have: one value per name of figure_names(), nothing where it lacks what it needs.
 struct FrameEvaluation {
   int64_t frame = 0;
   std::vector<std::optional<double>> values;

@@ -104,7 +104,7 @@ std::optional<Channel> to_channel(std::string_view word) {
   return static_cast<Channel>(found - kNames.begin());
 }
 
-// Frame times are rounded in the file: 0.0083333 means 120 a second. Rates that round to the same text are whole.
+// Frame times are rounded in the file: 0.0083333 means 120 per second. Rates that round to the same text are whole.
 double fps_from_frame_time(std::string_view word, double frame_time_s) {
   const double fps = 1 / frame_time_s, whole = std::round(fps);
   const size_t dot = word.find('.');
@@ -230,7 +230,7 @@ class Reader {
 
   Result<void> read_frames(size_t num_frames) {
     const size_t J = clip_.joints.size();
-    // What the file can hold at two bytes a value, however many frames it claims.
+    // What the file can hold at two bytes per value, however many frames it claims.
     const size_t expected = std::min(num_frames, lexer_.bytes_left() / (2 * num_channels_) + 1) * J;
     clip_.rotations.reserve(expected);
     clip_.translations.reserve(expected);

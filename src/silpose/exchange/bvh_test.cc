@@ -158,7 +158,7 @@ Dof rotation(const std::string& name, int joint, const Vector3d& axis) {
           .lower = -kPi, .upper = kPi};
 }
 
-// A trunk with two arms whose joints do not stand depth first, as our human's do not.
+// A trunk with two arms whose joints are not in depth-first order, as our human's do not.
 Skeleton small_skeleton() {
   std::vector<Joint> joints = {{"root", -1, {0, 0.9, 0}, {0, 1, 2, 3, 4}},
                                {"chest", 0, {0, 0.4, 0.02}, {5, 6, 7}},

@@ -90,14 +90,15 @@ class Writer {
 }  // namespace
 
 Result<void> write_bvh(const std::filesystem::path& path, const Clip& clip) {
-  check(!clip.joints.empty() && clip.fps > 0, "write_bvh: {} joints, {} frames a second", clip.num_joints(), clip.fps);
+  check(!clip.joints.empty() && clip.fps > 0, "write_bvh: {} joints, {} frames per second", clip.num_joints(),
+        clip.fps);
   if (clip.num_frames() > 0) (void)clip.world_from_joint(0);  // throws where joints or shapes are out of order
   return write_text_file(path, Writer(clip).write());
 }
 
 Clip clip_from_poses(const Skeleton& skeleton, std::span<const std::vector<double>> poses, double fps,
                      std::span<const BodyModel::EndPoint> end_points) {
-  check(fps > 0 && std::isfinite(fps), "clip_from_poses: {} frames a second", fps);
+  check(fps > 0 && std::isfinite(fps), "clip_from_poses: {} frames per second", fps);
   const auto joints = skeleton.joints();
   std::vector<bool> is_leaf(joints.size(), true);
   Clip clip;

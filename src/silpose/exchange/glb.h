@@ -12,8 +12,8 @@
 
 namespace silpose {
 
-// One node a joint, standing in standing_pose(); the four largest skin weights of each vertex, brought to a sum of 1;
-// keys at the rows' times, linear between them: rotations of every joint that turns, translations of those that move.
+// One node per joint, in standing_pose(); the four largest skin weights of each vertex, brought to a sum of 1; keys at
+// the rows' times, linear between them: rotations of every joint that turns, translations of those that move.
 // A row that is not later than the one before, in single precision, has no key. Without rows there is no animation.
 // Errors: not writable. Throws std::invalid_argument when poses have another size or the body has no mesh.
 Result<void> write_glb(const std::filesystem::path& path, const BodyModel& body, const PoseTable& poses);

@@ -17,7 +17,7 @@ namespace silpose {
 // human's.
 [[nodiscard]] bool has_opensim_coordinates(const Skeleton& skeleton);
 
-// One row a row of `poses`, in degrees and metres, curves without jumps.
+// One row per row of `poses`, in degrees and metres, curves without jumps.
 // Errors: not writable. Throws std::invalid_argument unless has_opensim_coordinates() and poses have the skeleton's
 // size.
 Result<void> write_mot(const std::filesystem::path& path, const Skeleton& skeleton, const PoseTable& poses);

@@ -12,7 +12,7 @@
 
 namespace silpose {
 
-// poses.csv, poses_normalised.csv and spread.csv: one row a frame, one value a column.
+// poses.csv, poses_normalised.csv and spread.csv: one row per frame, one value per column.
 struct PoseTable {
   struct Row {
     int64_t frame = 0;

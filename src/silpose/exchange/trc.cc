@@ -11,7 +11,7 @@ namespace silpose {
 
 Result<void> write_trc(const std::filesystem::path& path, const MarkerTable& table, double fps) {
   const size_t num_markers = table.names.size();
-  check(num_markers > 0 && fps > 0, "write_trc: {} markers, {} frames a second", num_markers, fps);
+  check(num_markers > 0 && fps > 0, "write_trc: {} markers, {} frames per second", num_markers, fps);
   std::string text;
   const auto put = [&]<class... Args>(fmt::format_string<Args...> format, Args&&... args) {
     fmt::format_to(std::back_inserter(text), format, std::forward<Args>(args)...);

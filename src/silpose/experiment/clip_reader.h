@@ -22,7 +22,7 @@ struct ClipInput {
   std::vector<std::string> videos;       // [C] in step
   std::string segmenter = "learned";     // segment/segmenter.h: learned, background or masks
   std::vector<std::string> backgrounds;  // [C], or empty: auto
-  int num_frames = 0;                    // the first so many; 0: all
+  int num_frames = 0;                    // the first ones; 0: all
 };
 
 class ClipReader {
@@ -31,9 +31,9 @@ class ClipReader {
   explicit ClipReader(std::string networks, size_t keep_bytes = size_t{2} << 30)
       : networks_(std::move(networks)), keep_bytes_(keep_bytes) {}
 
-  // One observation a video and instant; frames and times are those of the videos together. `go_on` is asked after each
-  // frame; when it says false there is no result. Errors: those of open_video(), make_segmenter() and the segmenter; a
-  // video without a frame.
+  // One observation per video and instant; frames and times are those of the videos together. `go_on` is asked after
+  // each frame; when it says false there is no result. Errors: those of open_video(), make_segmenter() and the
+  // segmenter; a video without a frame.
   Result<std::optional<std::vector<ClipInstant>>> read(const ClipInput& input, const std::function<bool()>& go_on);
 
   [[nodiscard]] size_t kept_bytes() const;  // of masks and confidence images that are kept

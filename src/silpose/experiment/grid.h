@@ -18,7 +18,7 @@ struct GridAxis {
 };
 
 struct GridCell {
-  std::vector<std::string> labels;  // one an axis
+  std::vector<std::string> labels;  // one per axis
   RunSettings settings;
 };
 
@@ -26,7 +26,7 @@ struct GridCell {
 // HOW one of max, min, median (over cells, of the means over seeds), sum, percent.
 struct TableDescription {
   std::string name, title;
-  std::vector<std::string> rows;     // axes: one row a combination of their labels
+  std::vector<std::string> rows;     // axes: one row per combination of their labels
   std::vector<std::string> columns;  // axes: the figures again for each combination of theirs
   std::vector<std::string> figures;
   std::string family;     // one row also for each score "FAMILY/MEMBER", with its mean; instead of figures

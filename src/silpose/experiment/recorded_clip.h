@@ -28,8 +28,9 @@ struct ClipTruth {
   std::vector<TrueSurface> surfaces;  // ascending frames
 };
 
-// [C], one a video of the settings. A .toml calibration as everywhere, or a .json object {width, height, K, dist (up to
-// 5), R_world_to_cam, t_world_to_cam_m}: one camera, metres, world Y up, pixels with the centre of the top-left one at
+// [C], one per video of the settings. A .toml calibration as everywhere, or a .json object {width, height, K, dist (up
+// to 5), R_world_to_cam, t_world_to_cam_m}: one camera, metres, world Y up, pixels with the centre of the top-left one
+// at
 // 0.5. Errors: unreadable; not such a file; no camera of a name; another number of cameras than videos.
 Result<std::vector<PinholeCamera>> read_clip_cameras(const RunSettings& settings, const std::filesystem::path& data);
 

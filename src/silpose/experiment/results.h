@@ -1,4 +1,5 @@
-// The files of an experiment: results.json, runs.csv, frames.csv, a CSV a table and an SVG a plot (docs/formats.md).
+// The files of an experiment: results.json, runs.csv, frames.csv, one CSV per table and one SVG per plot
+// (docs/formats.md).
 // Threads: functions without state.
 #pragma once
 

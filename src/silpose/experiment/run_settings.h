@@ -12,8 +12,8 @@ namespace silpose {
 
 struct RunSettings {
   // The sequence.
-  std::string model = "human";  // the body that is seen
-  bool drawn_person = false;    // somebody of its stature with proportions of their own (synth/drawn_person.h) is seen
+  std::string model = "human";    // the body that is seen
+  bool drawn_person = false;      // a person of its stature with other proportions (synth/drawn_person.h) is seen
   std::string motion = "static";  // synth/motion_source.h; one with a file extension lies under the data folder
   int frames = 0;                 // 0: all of a file, 80 of any other motion
   double fps = 30;
@@ -29,13 +29,13 @@ struct RunSettings {
                                     // a segmenter's confidence could give
   bool keypoints = false;           // with each mask, those that a network might see (synth/simulated_keypoints.h)
   // A recorded clip in place of both. Paths are relative to the data folder.
-  std::vector<std::string> clip;          // one video a camera, in step; empty: the run is on a rendered sequence
+  std::vector<std::string> clip;          // one video per camera, in step; empty: the run is on a rendered sequence
   std::string camera;                     // calibration: .toml, or .json as docs/formats.md says
-  std::vector<std::string> camera_names;  // of the calibration, one a video; empty: all, in their order
+  std::vector<std::string> camera_names;  // of the calibration, one per video; empty: all, in their order
   std::string truth;                      // a folder with joints.csv, or with surfaces as numbered .ply files
   std::optional<double> truth_above;      // m: of surfaces, only what lies above this y of the world counts
   std::string segmenter = "learned";      // learned, background, or masks: the videos are masks
-  std::vector<std::string> background;    // for `background`: auto, or a picture of the empty scene, one a video
+  std::vector<std::string> background;    // for `background`: auto, or a picture of the empty scene, one per video
   std::optional<bool> floor;              // the world's y = 0 is the floor; unset: as the preset has it
   // The tracker.
   std::string evidence = "both";  // where there are keypoints: silhouette, landmarks, both; of a clip also network: no

@@ -46,7 +46,7 @@ ClipTruth truth_of(const BodyModel& leg, int num_frames) {
   return truth;
 }
 
-// A leg bent by so much more than the true one, `tx` m off to the side, with these claims.
+// A leg bent by this much more than the true one, `tx` m off to the side, with these claims.
 StepReport report_of(int frame, double more_deg, double tx, double knee_sd_deg, double foot_sd_m) {
   StepReport report;
   report.frame_idx = frame;
@@ -59,7 +59,7 @@ StepReport report_of(int frame, double more_deg, double tx, double knee_sd_deg, 
   return report;
 }
 
-// How far the foot is off, mm, where the knee is bent by so much too far.
+// How far the foot is off, mm, where the knee is bent by this much too far.
 double foot_mm(double more_deg) { return 1000 * 2 * kShin * std::sin(to_radians(more_deg) / 2); }
 
 const std::vector<PinholeCamera> kCameras = {default_camera(640, 480)};

@@ -30,7 +30,7 @@ size_t index_of(const std::vector<std::string>& names, const std::string& name) 
   return static_cast<size_t>(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
-// IoU with the true silhouette a frame; NaN without a pose. [R]
+// IoU with the true silhouette per frame; NaN without a pose. [R]
 std::vector<double> overlaps(const SyntheticSequence& truth, const BodyModel& body,
                              std::span<const StepReport> reports) {
   std::vector<double> overlap(reports.size(), kAbsent);

@@ -12,10 +12,10 @@
 
 namespace silpose {
 
-// A run is lost when the root-aligned joint error stays above the first, mm, over so many of its last frames.
+// A run is lost when the root-aligned joint error stays above the first, mm, over this many of its last frames.
 inline constexpr double kLostMm = 150;
 inline constexpr int kLostFrames = 15;
-// A start is in the right basin when that error is below so much at the last of so many first frames.
+// A start is in the right basin when that error is below kBasinMm at the last of this many first frames.
 inline constexpr double kBasinMm = 100;
 inline constexpr int kBasinFrames = 15;
 

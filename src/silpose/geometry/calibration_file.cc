@@ -252,7 +252,7 @@ Result<Calibration> load_calibration(const std::filesystem::path& path, const Ca
     cameras.push_back(std::move(*camera));
   }
   if (cameras.empty()) return error("{}: holds no camera", file);
-  // The parser keeps tables by name; cameras are numbered as they stand in the file.
+  // The parser keeps tables by name; cameras are numbered in the order of the file.
   std::stable_sort(cameras.begin(), cameras.end(), [](const auto& a, const auto& b) { return a.line < b.line; });
   for (size_t i = 0; i < cameras.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
@@ -278,7 +278,7 @@ Result<Calibration> load_calibration(const std::filesystem::path& path, const Ca
   }
   if (!unit && calibration.cameras[0].centre_in_world().norm() > kFarCentre) {
     calibration.warnings.push_back(fmt::format(
-        "{}: does not say its unit; metres assumed, but camera '{}' would stand {:.0f} m from the origin", file,
+        "{}: does not say its unit; metres assumed, but camera '{}' would be {:.0f} m from the origin", file,
         calibration.cameras[0].name, calibration.cameras[0].centre_in_world().norm()));
   }
   return calibration;

@@ -1,5 +1,5 @@
 // Calibration files: the TOML form that Pose2Sim, Anipose and FreeMoCap share, read and written.
-// One table a camera: name, size, matrix, distortions, rotation (Rodrigues), translation, fisheye; camera from world.
+// One table per camera: name, size, matrix, distortions, rotation (Rodrigues), translation, fisheye; camera from world.
 // Pixel convention, up axis and unit of the file are converted here and nowhere else (docs/formats.md).
 // Threads: functions without state.
 #pragma once

@@ -64,7 +64,7 @@ TEST_F(CalibrationFile, ReadsACameraAndShiftsPixelsByHalf) {
   EXPECT_EQ(camera.cx, 320);
   EXPECT_EQ(camera.cy, 240);
   EXPECT_THAT(camera.distortion, testing::ElementsAre(-0.1, 0.2, 0.01, 0.02, 0));
-  // Half a turn about x: the camera looks along -Z and stands at (0, 1.5, 5.5).
+  // Half a turn about x: the camera looks along -Z and is at (0, 1.5, 5.5).
   EXPECT_TRUE(camera.centre_in_world().isApprox(Eigen::Vector3d(0, 1.5, 5.5), 1e-12));
   EXPECT_TRUE(camera.project({0, 1.5, 0})->isApprox(Eigen::Vector2d(320, 240), 1e-12));
 }
@@ -114,7 +114,7 @@ std::string level_camera(const std::string& name, const Eigen::Vector3d& up, con
 }
 
 TEST_F(CalibrationFile, TurnsAZUpWorld) {
-  // The file's (x, y, z) is our (x, z, -y): what stands at z = 1 in the file stands at y = 1 here.
+  // The file's (x, y, z) is our (x, z, -y): what is at z = 1 in the file is at y = 1 here.
   const auto text = level_camera("a", Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitY());
   for (const auto& said : {std::string("[metadata]\nup = \"z\"\n"), std::string()}) {
     const auto calibration = load(text + said).value();

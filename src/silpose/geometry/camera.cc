@@ -110,7 +110,7 @@ PinholeCamera look_at_camera(int width, int height, double focal_px, const Eigen
                              const Eigen::Vector3d& target) {
   check(width > 0 && height > 0 && focal_px > 0, "camera of {} x {} pixels, focal length {}", width, height, focal_px);
   const Eigen::Vector3d along = target - eye;
-  check(along.norm() > 1e-9, "a camera cannot look at the point where it stands");
+  check(along.norm() > 1e-9, "a camera cannot look at its own position");
   const Eigen::Vector3d forward = along.normalized();
   Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitY());
   if (right.norm() < 1e-6) right = Eigen::Vector3d::UnitX();  // straight up or down: +X stays to the right

@@ -1,4 +1,4 @@
-// Mask: a binary picture, one bit a pixel, and its counting kernels. A silhouette is a Mask.
+// Mask: a binary picture, one bit per pixel, and its counting kernels. A silhouette is a Mask.
 // Bit x of row y is bit (x % 64) of word (x / 64) of that row; bits beyond the width are always 0.
 // Threads: a value; const functions are safe.
 #pragma once

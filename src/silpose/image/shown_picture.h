@@ -21,7 +21,7 @@ struct Turn {
 // it). Nothing: no quarter turn.
 std::optional<Turn> turn_of_matrix(std::span<const int32_t, 9> matrix);
 
-// How wide pixels are for their height, as far as it matters: 1 within 1 %, and where it cannot be meant (beyond 4).
+// How wide pixels are for their height, as far as it matters: 1 within 1 %, and where it is implausible (beyond 4).
 double believed_pixel_aspect(double aspect);
 
 // Lines of the field that comes second give way to the mean of those around them. [H, W, 3]

@@ -185,7 +185,7 @@ Result<Video> open_video(const std::vector<std::string>& inputs, const VideoOpti
     if (!camera) return camera.failure();
     const double rate = camera->source->fps();
     if (rate > 0 && impl->fps > 0 && std::abs(rate - impl->fps) > 0.1 * impl->fps) {
-      return error("{}: {:.3f} frames a second, the inputs before it {:.3f}", input, rate, impl->fps);
+      return error("{}: {:.3f} frames per second, the inputs before it {:.3f}", input, rate, impl->fps);
     }
     if (impl->fps == 0) impl->fps = rate;
     impl->live = impl->live || camera->source->is_live();

@@ -209,7 +209,7 @@ class VideoFile : public FrameSource {
     if (!(fps_ > 0 && fps_ <= 1000)) fps_ = 0;
     if (!first_pts_ && fps_ > 0) {
       warnings_.push_back(
-          fmt::format("{}: carries no times; {:.3f} frames a second, according to its encoding", name_, fps_));
+          fmt::format("{}: carries no times; {:.3f} frames per second, according to its encoding", name_, fps_));
     }
 
     focal_mm35_.reset();

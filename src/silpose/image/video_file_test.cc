@@ -110,7 +110,7 @@ TEST_F(VideoFileTest, TimesAreTheContainersFromTheFirstFrame) {
     EXPECT_THAT(times_ms(video), ElementsAre(0, 33, 67, 200, 217, 233, 700)) << name;
     EXPECT_THAT(video.warnings(), IsEmpty()) << name;
     EXPECT_FALSE(video.truncated()) << name;
-    EXPECT_LE(video.fps(), 30) << name << ": not the 1000 a second that the time stamps would allow";
+    EXPECT_LE(video.fps(), 30) << name << ": not the 1000 per second that the time stamps would allow";
     EXPECT_EQ(video.num_frames_hint(), 7) << name;
   }
 }

@@ -303,7 +303,7 @@ TEST_F(VideoTest, CamerasInStepEndWithTheShortest) {
   EXPECT_EQ(count_frames(video), 5);
   EXPECT_FALSE(video.truncated());
   const std::string c = write_clip("c.mp4", 5, 25);
-  EXPECT_THAT(open_video(std::vector<std::string>{a, c}).error().message, HasSubstr("c.mp4: 25.000 frames a second"));
+  EXPECT_THAT(open_video(std::vector<std::string>{a, c}).error().message, HasSubstr("c.mp4: 25.000 frames per second"));
 }
 
 TEST_F(VideoTest, OnePictureIsAVideoOfOneFrame) {

@@ -158,7 +158,7 @@ Result<void> VideoWriter::close() {
 }
 
 Result<VideoWriter> create_video(const std::filesystem::path& path, int width, int height, double fps) {
-  check(width > 0 && height > 0 && fps > 0, "create_video: {}x{} at {} frames a second", width, height, fps);
+  check(width > 0 && height > 0 && fps > 0, "create_video: {}x{} at {} frames per second", width, height, fps);
   const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
   std::error_code code;
   if (!std::filesystem::is_directory(folder, code)) return error("{}: no such directory", folder.string());

@@ -60,7 +60,7 @@ struct NumberedCells {
   size_t* count;
 };
 
-// Numbers the cells of row y that hold an end, a bit a cell in `bits`. Writes, for every cell of the box's row and
+// Numbers the cells of row y that hold an end, one bit per cell in `bits`. Writes, for every cell of the box's row and
 // `margin` beyond, how many come before it: rank[x]. Up to kLanes more are written.
 void number_row(const uint64_t* bits, const CellBox& box, int y, int margin, int32_t* rank, const NumberedCells& cells);
 

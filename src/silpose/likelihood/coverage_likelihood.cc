@@ -63,7 +63,7 @@ CoverageLikelihood::Scratch::~Scratch() {
 
 CoverageLikelihood::CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras,
                                        int rows_per_cell) {
-  check(rows_per_cell >= 1, "CoverageLikelihood: {} rows a cell", rows_per_cell);
+  check(rows_per_cell >= 1, "CoverageLikelihood: {} rows per cell", rows_per_cell);
   check(body != nullptr && !body->rest.faces.empty(), "CoverageLikelihood: no body");
   check(!cameras.empty(), "CoverageLikelihood: no camera");
   impl_ = std::make_shared<const Impl>(std::move(body), std::move(cameras), rows_per_cell);

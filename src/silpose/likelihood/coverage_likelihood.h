@@ -98,7 +98,7 @@ class CoverageLikelihood {
   // Outlines are never trusted further than this, however well a body may fit: its skin has its own errors.
   static constexpr double kLeastNoise = 1;
 
-  // Shapes: one observation a camera. A camera whose observation found nothing is ignored. Only blurs from
+  // Shapes: one observation per camera. A camera whose observation found nothing is ignored. Only blurs from
   // `narrowest` to `widest` are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit
   // its camera.
   [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32,

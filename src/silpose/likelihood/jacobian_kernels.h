@@ -42,7 +42,7 @@ void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, s
 // J' K J = M + M' with M = J' half_near. near_blocks [n]: where it is not zero.
 void add_near_rows(const EndCells& cells, const float* jacobian, size_t stride, float* half_near, int32_t* near_blocks);
 
-// A matrix [n, stride], and for each of its blocks which rows are not zero there: a bit a row, [blocks, words].
+// A matrix [n, stride], and for each of its blocks which rows are not zero there: one bit per row, [blocks, words].
 struct SparseRows {
   const float* rows;
   const uint64_t* bits;

@@ -155,7 +155,7 @@ double KeypointTerm::add(const Skeleton& skeleton, std::span<const double> pose,
   for (const Point& point : points_) x.push_back(motion.position(point.joint_idx, point.x_in_joint));
 
   const auto most_rows = static_cast<Eigen::Index>(2 * places_.size() + 3 * directions_.size());
-  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(gradient.size(), most_rows);  // transposed: a column a residual
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Zero(gradient.size(), most_rows);  // transposed: one column per residual
   Eigen::VectorXd residual(most_rows);
   Eigen::Index row = 0;
   double sum = 0;

@@ -77,7 +77,7 @@ Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations
         view.area = view.observed.count();
       }
       view.trust = view.area > 0 ? observation.trust.overall : 0;
-      // What is cropped says nothing of where the body is, nor do places in the image of a pose that is elsewhere.
+      // Cropped silhouettes carry no information about the position, nor do image places of a pose that is elsewhere.
       if (view.trust > 0) {
         view.keypoints = make_keypoint_term(body(), camera, observation, options_.evidence,
                                             options_.comparison == Comparison::kImage);

@@ -56,7 +56,7 @@ class SilhouetteLikelihood {
   // REQUIRES: at least one renderer, all of the same body.
   SilhouetteLikelihood(std::vector<std::shared_ptr<const BatchRenderer>> renderers, LikelihoodOptions options);
 
-  // Shapes: one observation a camera. A camera whose observation found nothing is ignored.
+  // Shapes: one observation per camera. A camera whose observation found nothing is ignored.
   [[nodiscard]] Evidence prepare(std::span<const Observation> observations) const;
 
   // Distance in [0, 1] of each state, mean over the cameras that are used: what differs over the sum of both areas (0

@@ -10,7 +10,7 @@
 namespace silpose {
 namespace {
 
-constexpr size_t kGrain = 64;  // particles a task
+constexpr size_t kGrain = 64;  // particles per task
 
 // What a frame's acceleration noise changes a velocity by, against the frame's noise of plain diffusion: a hip swings
 // through 25 degrees once a second, so its velocity changes by about a degree a frame every frame.

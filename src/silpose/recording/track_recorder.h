@@ -15,7 +15,7 @@ namespace silpose {
 
 struct RecorderOptions {
   std::string prefix = "tracker";  // of every path
-  bool masks = true;               // the observed masks go onto the board too: 1 bit a pixel, frame and camera
+  bool masks = true;               // the observed masks go onto the board too: 1 bit per pixel, frame and camera
 };
 
 // Entries are stamped with the frame's time:

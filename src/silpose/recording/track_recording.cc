@@ -95,7 +95,7 @@ MarkerTable marker_table(const TrackRecording& recording, const BodyModel& body)
 }
 
 std::vector<std::vector<double>> even_poses(const TrackRecording& recording, const Skeleton& skeleton, double fps) {
-  check(fps > 0, "even_poses: {} a second", fps);
+  check(fps > 0, "even_poses: {} per second", fps);
   constexpr int64_t kSame_ns = 10'000;
   std::vector<std::vector<double>> poses;
   const RecordedStep* before = nullptr;

@@ -43,7 +43,7 @@ PoseTable spread_table(const TrackRecording& recording);
 // Every joint and head_top, with its pixel in `camera` and its spread.
 JointTable joint_table(const TrackRecording& recording, const BodyModel& body, const PinholeCamera& camera);
 
-// Every joint and end point as a marker, a row a frame; without positions where the body was not compared with a
+// Every joint and end point as a marker, one row per frame; without positions where the body was not compared with a
 // silhouette: waiting, coasted.
 MarkerTable marker_table(const TrackRecording& recording, const BodyModel& body);
 

@@ -19,8 +19,8 @@ namespace silpose {
 // The window whose pixels are a window's samples.
 [[nodiscard]] Window sample_window(const Window& window);
 
-// An observation's coverages as kernels read them: eight pixels of a row a word, word columns of all rows one after the
-// other.
+// An observation's coverages as kernels read them: eight pixels of a row per word, word columns of all rows one after
+// the other.
 class CoverageColumns {
  public:
   explicit CoverageColumns(const ByteImage& coverage);  // values up to kFullCoverage

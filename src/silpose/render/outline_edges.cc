@@ -137,7 +137,7 @@ void OutlineEdges::find(std::span<const GridPoint> points, bool some_unseen, std
 
 void OutlineEdges::find_among_seen(std::span<const GridPoint> points) {
   const std::vector<Face>& faces = topology_->faces;
-  facing_.assign(faces.size() + 1, 0);  // the last stands for a missing neighbour
+  facing_.assign(faces.size() + 1, 0);  // the last is a missing neighbour
   for (size_t f = 0; f < faces.size(); ++f) {
     const GridPoint a = points[faces[f][0]], b = points[faces[f][1]], c = points[faces[f][2]];
     if (!a.unseen() && !b.unseen() && !c.unseen()) facing_[f] = facing_of(a, b, c);

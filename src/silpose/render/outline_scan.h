@@ -34,7 +34,7 @@ class OutlineScan {
   [[nodiscard]] OutlineRenderer::Counts count(const Mask& observed) const;
   [[nodiscard]] std::optional<PixelBounds> bounds() const;
 
-  // The scanned silhouette itself: 64 pixels of a row a word, word columns of all rows one after the other. Words
+  // The scanned silhouette itself: 64 pixels of a row per word, word columns of all rows one after the other. Words
   // outside of the rows and columns named mean nothing. Valid until the next scan.
   struct Bits {
     const uint64_t* words;  // [ceil(width / 64), height]

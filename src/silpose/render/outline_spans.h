@@ -56,7 +56,7 @@ class OutlineSpans {
   SampledRows rows_;
   std::vector<uint8_t> winding_;  // [positions / 8 + spare] bits: the strip order winds anticlockwise
   std::vector<uint64_t> found_;   // scratch
-  std::vector<int8_t> facing_;    // [F + 1] 1, -1, or 0: left out; the last stands for a missing neighbour
+  std::vector<int8_t> facing_;    // [F + 1] 1, -1, or 0: left out; the last is a missing neighbour
   std::vector<uint32_t> outline_from_, outline_to_;  // [edges + spare] the first few
   std::vector<int32_t> outline_change_;
   size_t num_outline_ = 0;

@@ -71,7 +71,7 @@ std::map<int, Row> united_rows(const Pixels& pixels, const std::vector<Face>& fa
   return united;
 }
 
-// The same from OutlineSpans; also that beginnings and ends take turns, and lie on the edges that they name.
+// The same from OutlineSpans; also that beginnings and ends alternate, and lie on the edges that they name.
 std::map<int, Row> scanned_rows(OutlineSpans& spans, const Pixels& pixels, const SampledRows& rows, bool some_unseen) {
   spans.scan(pixels, rows, some_unseen);
   const SpanEnds ends = spans.ends();

@@ -1,6 +1,6 @@
 // Depth images and shaded pictures of a mesh; for viewing and for synthetic video, never for tracking. Depth-buffered
 // triangles, exactly those that silhouette.h draws; smooth Lambert shading by vertex; a shadow on the floor y = 0;
-// edges smoothed by 2x2 samples a pixel.
+// edges smoothed by 2x2 samples per pixel.
 // Threads: pure functions.
 #pragma once
 

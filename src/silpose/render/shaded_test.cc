@@ -39,7 +39,7 @@ TEST_F(ShadedTest, DepthIsThereWhereTheSilhouetteIs) {
 }
 
 TEST_F(ShadedTest, DepthOfATiltedPlaneIsExact) {
-  // The floor before a camera that looks down at it; depth along the axis follows from the ray's slope.
+  // The floor in front of a camera that looks down at it; depth along the axis follows from the ray's slope.
   const std::vector<Eigen::Vector3f> floor = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}};
   const Image<float> depth = draw_depth(camera_, floor, std::vector<Face>{{0, 1, 2}, {0, 2, 3}});
   int seen = 0;

@@ -46,7 +46,7 @@ void skin_and_project(const SkinView& skin, ChunkFloats* x, ChunkFloats* y, Chun
 [[nodiscard]] bool skin_and_round(const SkinView& skin, const GridAxis& x_axis, const GridAxis& y_axis,
                                   GridPoint* points);
 
-// The same at once as pixels, x and y in turns. False as above.
+// The same at once as pixels, x and y alternating. False as above.
 [[nodiscard]] bool skin_to_pixels(const SkinView& skin, float* xy);
 
 // Points of the plane z = 1 to pixels through a lens: fx, fy, cx, cy, then OpenCV's k1 k2 p1 p2 k3.
@@ -59,7 +59,7 @@ void distort_points(const LensFloats& lens, size_t num_chunks, ChunkFloats* x, C
 ProjectionBounds bounds_of_points(size_t num_chunks, const ChunkFloats* x, const ChunkFloats* y,
                                   const ChunkFloats* depth);
 
-// As GridAxis::round, x and y in turns.
+// As GridAxis::round, x and y alternating.
 void round_points(const GridAxis& x_axis, const GridAxis& y_axis, size_t num_chunks, const ChunkFloats* x,
                   const ChunkFloats* y, GridPoint* points);
 

@@ -18,7 +18,7 @@ struct SampledRows {
 };
 
 // Edges whose two faces are turned to different sides, or that have one only: crossing one where it runs down, the
-// winding number changes by so much.
+// winding number changes by this much.
 struct OutlineList {
   uint32_t *from, *to;
   int32_t* change;
@@ -55,8 +55,8 @@ struct EndLists {
   int32_t *row, *edge;
 };
 
-// One bit a position: whether the strip order of its triangle winds anticlockwise on the screen. `pixels`: x and y in
-// turns; `vertex` is StripOrder's.
+// One bit per position: whether the strip order of its triangle winds anticlockwise on the screen. `pixels`: x and y
+// alternating; `vertex` is StripOrder's.
 void find_winding(const float* pixels, const uint32_t* vertex, size_t num_positions, uint8_t* winding);
 
 // The edges between two faces; sets `from` and `to`, returns how many. `found` as find_strip_edges() has it.

@@ -23,7 +23,7 @@ class StripBuilder {
   // Calls take(strip) for strips that together hold every face once. position() is the caller's to set by place().
   template <class Take>
   void run(Take&& take) {
-    // Faces by how many of their neighbours are left; an entry may be out of date and is then passed over.
+    // Faces by how many of their neighbours are left; an entry may be out of date and is then skipped.
     for (uint32_t f = 0; f < faces_.size(); ++f) by_neighbours_[neighbours_left(f)].push_back(f);
     for (;;) {
       const auto bucket = std::ranges::find_if(by_neighbours_, [](const auto& faces) { return !faces.empty(); });

@@ -43,20 +43,20 @@ class ReportData : public testing::Test {
 };
 
 TEST_F(ReportData, ShowsDegreesMetresAndGaps) {
-  const json told = data();
-  EXPECT_EQ(told["state"], "wtc");
-  EXPECT_EQ(told["frame"]["deltas"], (json{60, 1, 1}));
-  EXPECT_EQ(told["accuracy"]["deltas"], (json{nullptr, 8750, nullptr}));  // 1e-4 each
-  EXPECT_EQ(told["n_eff"]["deltas"], (json{nullptr, 1000, nullptr}));
-  EXPECT_EQ(told["trust"][0]["camera"], "front");
-  EXPECT_EQ(told["trust"][0]["values"]["deltas"], (json{0, 750, nullptr}));
-  const json& move = told["dofs"][0];
+  const json parsed = data();
+  EXPECT_EQ(parsed["state"], "wtc");
+  EXPECT_EQ(parsed["frame"]["deltas"], (json{60, 1, 1}));
+  EXPECT_EQ(parsed["accuracy"]["deltas"], (json{nullptr, 8750, nullptr}));  // 1e-4 each
+  EXPECT_EQ(parsed["n_eff"]["deltas"], (json{nullptr, 1000, nullptr}));
+  EXPECT_EQ(parsed["trust"][0]["camera"], "front");
+  EXPECT_EQ(parsed["trust"][0]["values"]["deltas"], (json{0, 750, nullptr}));
+  const json& move = parsed["dofs"][0];
   EXPECT_EQ(move["values"]["deltas"], (json{nullptr, 5000, 0}));
   EXPECT_EQ(move["half"]["deltas"], (json{nullptr, 33, 33}));  // 32.9 and 65.8 mm
   EXPECT_EQ(move["unit"], "m");
   EXPECT_EQ(move["group"], "root");
-  EXPECT_TRUE(told["dofs"][1]["limits"].is_null());
-  const json& bend = told["dofs"][2];
+  EXPECT_TRUE(parsed["dofs"][1]["limits"].is_null());
+  const json& bend = parsed["dofs"][2];
   EXPECT_EQ(bend["values"]["deltas"], (json{nullptr, 3000, 0}));
   EXPECT_EQ(bend["limits"], (json{0.0, 90.0}));
   EXPECT_EQ(bend["side"], "right");
@@ -82,10 +82,10 @@ TEST_F(ReportData, IsOffByHalfAStepAtMostHoweverLong) {
     if (i % 7 == 3) step.pose.clear();
     recording.steps.push_back(std::move(step));
   }
-  const json told = data();
+  const json parsed = data();
   for (size_t d = 0; d < 3; ++d) {
     const double scale = d == 0 ? 1 : to_degrees(1), step = d == 0 ? kLengthStepM : kAngleStepDeg;
-    const auto values = unpacked(told["dofs"][d]["values"]), half = unpacked(told["dofs"][d]["half"]);
+    const auto values = unpacked(parsed["dofs"][d]["values"]), half = unpacked(parsed["dofs"][d]["half"]);
     ASSERT_EQ(values.size(), 2000u);
     for (size_t i = 0; i < values.size(); ++i) {
       const RecordedStep& truth = recording.steps[i];
@@ -96,7 +96,7 @@ TEST_F(ReportData, IsOffByHalfAStepAtMostHoweverLong) {
       ASSERT_THAT(half[i].value(), DoubleNear(1.645 * truth.spread[d] * scale, 5.001 * step));
     }
   }
-  const auto height = unpacked(told["skeleton"]["positions"][2][1]);
+  const auto height = unpacked(parsed["skeleton"]["positions"][2][1]);
   const Eigen::Vector3d tip = landmark_positions(body, recording.steps[1999].pose)[2];
   EXPECT_THAT(height[1999].value(), DoubleNear(tip.y(), 0.5001 * kPositionStepM));
 }
@@ -113,12 +113,12 @@ TEST_F(ReportData, WhatIsNotANumberIsAGap) {
   const std::string text = report_json(input);
   EXPECT_THAT(text, Not(HasSubstr("nan")));
   EXPECT_THAT(text, Not(HasSubstr("inf")));
-  const json told = json::parse(text);
-  EXPECT_EQ(told["dofs"][0]["values"]["deltas"], (json{nullptr, nullptr, 5000}));
-  EXPECT_EQ(told["dofs"][2]["values"]["deltas"], (json{nullptr, nullptr, 3000}));
-  EXPECT_EQ(told["dofs"][1]["half"]["deltas"], (json{nullptr, nullptr, 0}));
-  EXPECT_TRUE(told["skeleton"]["positions"][2][1]["deltas"][1].is_null());
-  EXPECT_EQ(told["stages"][0], (json{"decode", nullptr}));
+  const json parsed = json::parse(text);
+  EXPECT_EQ(parsed["dofs"][0]["values"]["deltas"], (json{nullptr, nullptr, 5000}));
+  EXPECT_EQ(parsed["dofs"][2]["values"]["deltas"], (json{nullptr, nullptr, 3000}));
+  EXPECT_EQ(parsed["dofs"][1]["half"]["deltas"], (json{nullptr, nullptr, 0}));
+  EXPECT_TRUE(parsed["skeleton"]["positions"][2][1]["deltas"][1].is_null());
+  EXPECT_EQ(parsed["stages"][0], (json{"decode", nullptr}));
 }
 
 TEST_F(ReportData, ExamplesOfMasksArePicturesInside) {

@@ -23,7 +23,7 @@ struct ReportInput {
   const TrackRecording* recording = nullptr;
   const BodyModel* body = nullptr;
   std::optional<Eigen::Vector3d> viewpoint;  // of the first camera, world: the skeleton is first shown from there
-  std::filesystem::path overlay_video;  // one picture a step, from time 0; embedded when small, else linked by its name
+  std::filesystem::path overlay_video;  // one picture per step, from time 0; embedded if small, else linked by name
   double fps = 30;                      // of the clip, where it is constant
   FactLines facts;                      // the run
   FactLines mask_facts;                 // how the masks were made: the segmenter and its settings

@@ -18,7 +18,7 @@ constexpr double kNoiseOfSlope = 0.2, kPlateNoiseOfSlope = 0.4;
 // A plate is encoded and exposed by itself.
 constexpr std::array<float, 3> kPlateFloor = {3.0f, 1.8f, 1.8f};
 constexpr float kMadToDeviation = 1.4826f;
-// Where the subject stands in nearly half of the samples the median deviation is the subject's: the lower third of the
+// Where the subject is in nearly half of the samples the median deviation is the subject's: the lower third of the
 // deviations bounds it, loosely, as grey levels are coarse for so small a quantile.
 constexpr float kLowerThirdToDeviation = 2.32f, kLowerThirdMargin = 1.0f;
 
@@ -95,8 +95,8 @@ void median_and_deviation(const std::vector<ByteImage>& images, ByteImage& media
   });
 }
 
-// Noise is alike in neighbouring pixels, and one pixel's deviation over few samples is not sure: average it with those
-// around it, and keep to the floor.
+// Noise is similar in neighbouring pixels, and one pixel's deviation over few samples is uncertain: average it with
+// those around it, and keep to the floor.
 void steady_noise(Image<float>& noise, const std::array<float, 3>& floor) {
   cv::Mat view(noise.height(), noise.width(), CV_32FC3, noise.pixels().data());
   cv::Mat around;

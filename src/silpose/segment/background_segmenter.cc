@@ -44,7 +44,7 @@ class BackgroundSegmenter : public BlobSegmenter {
   [[nodiscard]] std::string name() const override { return options_.name; }
 
  private:
-  // All foreground of a picture, whosever it is.
+  // All foreground of a picture, not only the subject's.
   struct Look {
     ByteImage luma_chroma;
     Mask found;

@@ -1,4 +1,4 @@
-// Depth images as files, one a picture of the clip they belong to.
+// Depth images as files, one per picture of the clip they belong to.
 // Threads: a value; its functions only read.
 #pragma once
 

@@ -11,7 +11,7 @@ namespace silpose {
 namespace {
 
 constexpr uint16_t kUnknown = std::numeric_limits<uint16_t>::max();
-constexpr size_t kStrayFar = 20;  // one in so many depths may be too far by mistake
+constexpr size_t kStrayFar = 20;  // one in this many depths may be too far by mistake
 
 // What the background may seem nearer by, metres: a few deviations of a structured-light sensor, which grow with the
 // square of the depth, and a margin for edges and steps.
@@ -74,8 +74,8 @@ Image<float> depth_evidence(const DepthImage& depth, const DepthImage& backgroun
   check(depth.width() == background.width() && depth.height() == background.height(),
         "depth_evidence: {}x{} before {}x{}", depth.width(), depth.height(), background.width(), background.height());
   constexpr float kMaxFor = 6;                     // so that neighbours can outvote it
-  constexpr double kDeviations = 3;                // the tolerance is so many
-  constexpr double kSubjectRange_m = 4 / 2.50663;  // the subject may stand anywhere in 4 m; over sqrt(2 pi)
+  constexpr double kDeviations = 3;                // the tolerance is this many
+  constexpr double kSubjectRange_m = 4 / 2.50663;  // the subject may be anywhere in 4 m; over sqrt(2 pi)
   Image<float> evidence(depth.width(), depth.height());
   parallel_for(static_cast<size_t>(depth.height()), 32, [&](size_t begin, size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
@@ -87,7 +87,7 @@ Image<float> depth_evidence(const DepthImage& depth, const DepthImage& backgroun
           to[x] = kMaxFor;
           continue;
         }
-        // Who stands farther than the background is the background: the subject stood here while it was learned.
+        // What is farther than the background is background: the subject was here while it was learned.
         const double deviation = tolerance(1e-3 * behind[x]) / kDeviations;
         const double nearer = std::max(0, behind[x] - seen[x]) * 1e-3 / deviation;
         const double odds = 0.5 * nearer * nearer - std::log(kSubjectRange_m / deviation);

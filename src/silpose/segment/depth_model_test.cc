@@ -9,8 +9,8 @@
 namespace silpose {
 namespace {
 
-// A wall 4 m away, a floor that comes nearer below row 60, a subject 20 wide who walks 3 m away and stands on it; noise
-// of 1.4 mm times the squared metres, and pixels without an answer. 120x90.
+// A wall 4 m away, a floor that comes nearer below row 60, a subject 20 wide who walks 3 m away on that floor; noise of
+// 1.4 mm times the squared metres, and pixels without an answer. 120x90.
 struct Room {
   double unknown = 0.02;
   bool far_wall = false;  // out of the sensor's reach

@@ -17,7 +17,7 @@ namespace {
 constexpr double kBand = 0.02;  // of the larger side of the mask's box
 // Distance from the edge, px: up to the first a pixel is no sample of the scene, from their sum on a whole one.
 constexpr float kUnsureRim = 1.5f, kRim = 3;
-// The subject's colour at its edge is that of the nearest pixels this deep inside it, averaged over so many: deep at
+// The subject's colour at its edge is that of the nearest pixels this deep inside it, averaged over this many: deep at
 // first, as the mask that is given may be too wide, and close to the edge the second time. What is thin is not deep.
 struct SampleRule {
   float depth;
@@ -129,7 +129,7 @@ struct EdgeScene {
   SceneNow now;
 };
 
-// Moves the edge of `mask` [h, w], of the part; `sure` [h, w] becomes less where it does not know.
+// Moves the edge of `mask` [h, w], of the part; `sure` [h, w] decreases where the evidence is inconclusive.
 void move_edge(const EdgeScene& scene, const SampleRule& rule, cv::Mat& mask, cv::Mat& sure) {
   cv::Mat inside, outside, near_mask, matte;
   cv::distanceTransform(mask, inside, cv::DIST_L2, cv::DIST_MASK_3);

@@ -186,7 +186,7 @@ void ForegroundFinder::for_each_run(const Body& body) const {
   });
 }
 
-// How much a pixel and its neighbour belong together.
+// How strongly a pixel and its neighbour are tied.
 void ForegroundFinder::tie_neighbours(const ByteImage& luma_chroma) {
   for_each_run([&](int x0, int x1, int y) {
     constexpr float kStraight = kNeighbours / 6.83f, kSlanted = 0.7071f * kStraight;  // 4 + 4 * 0.7071

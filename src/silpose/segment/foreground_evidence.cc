@@ -17,7 +17,7 @@ namespace {
 constexpr float kThreshold = 22;
 // A small difference that a whole window shows counts as well. Noise of coded video is alike in neighbours: the mean of
 // nine pixels has half the variance of one, not a ninth.
-// Not where the pixel itself shows next to nothing: there the window looks over the subject's edge.
+// Not where the pixel itself shows almost no difference: there the window extends over the subject's edge.
 constexpr float kWindowWeight = 2, kWindowMost = 10;
 constexpr float kMostFor = 6;  // as kMostAgainst
 // Shadows darken to a third at most: the deviation of the factor. Light thrown back brightens far less.

@@ -21,7 +21,7 @@ namespace {
 constexpr double kPresentAtFirst = 0.8, kStillPresent = 0.5;
 constexpr int kMaxLooks = 8;                              // until the square fits the person
 constexpr std::array<double, 3> kZooms = {1, 1.75, 3.5};  // small persons are detected in parts of the picture,
-constexpr int kSearchEvery = 10;                          // but not in every picture without anybody
+constexpr int kSearchEvery = 10;                          // but not in every picture without a person
 constexpr double kMinSide = 24;                           // px, of a square with a person
 constexpr float kSureLogit = 5;
 constexpr size_t kMaxLearned = 40;
@@ -37,7 +37,7 @@ class LearnedSegmenter : public Segmenter {
   LearnedSegmenter(PersonNetwork network, PersonDetector detector, const CleanUpOptions& clean_up)
       : network_(std::move(network)), detector_(std::move(detector)), clean_up_(clean_up) {}
 
-  // A few dozen pictures show what is behind; the network takes its time.
+  // A few dozen pictures show what is behind; the network is slow.
   void learn(const BackgroundSamples& samples) {
     const size_t step = (samples.images.size() + kMaxLearned - 1) / kMaxLearned;
     std::vector<ByteImage> pictures;

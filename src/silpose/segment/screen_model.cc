@@ -182,7 +182,7 @@ Result<ScreenModel> learn_screen(const BackgroundSamples& samples, const std::op
     return error("no screen: {} covers {:.1f} % of the picture",
                  key ? "the key colour's hue" : "the commonest saturated colour", 100 * dominant.share);
   }
-  // From one colour for all of the picture to one a place.
+  // From one colour for all of the picture to one per place.
   Image<float> project(width, height, 3);
   const std::array<float, 3> everywhere = projection(dominant.mean);
   for (size_t i = 0; i < project.pixels().size(); ++i) project.pixels()[i] = everywhere[i % 3];

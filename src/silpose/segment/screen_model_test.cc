@@ -19,7 +19,7 @@ using Rgb = std::array<double, 3>;
 // A grey-clad subject with bare arms, a box that walks before a lit screen; 160x120, B, G, R with noise.
 struct Stage {
   Rgb screen = {20, 170, 70};
-  double unevenness = 0;               // the light falls off by so much from left to right
+  double unevenness = 0;               // the light falls off by this much from left to right
   double spill = 0;                    // of the screen's light, on the subject
   std::optional<Box> screen_box = {};  // the screen ends there; a beige room around it
   Rgb cloth = {110, 110, 115};

@@ -17,7 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// A clip of pictures at 10 frames a second: frames 0-9 empty, then the subject walks through, 5 pixels a frame.
+// A clip of pictures at 10 frames per second: frames 0-9 empty, then the subject walks through, 5 pixels per frame.
 class SegmenterTest : public testing::Test {
  protected:
   static constexpr int kEmpty = 10, kFrames = 50;
@@ -236,7 +236,7 @@ TEST_F(SegmenterTest, SettingsThatCannotBe) {
   EXPECT_THAT(make_segmenter(at("no_clip.mp4")).error().message, HasSubstr("no_clip.mp4: no such file"));
 }
 
-// The scene's subject before a green screen that covers all but the picture's left edge.
+// The scene's subject in front of a green screen that covers all but the picture's left edge.
 TEST_F(SegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   const auto keyed = [&](int i) {
     ByteImage image = picture(i);

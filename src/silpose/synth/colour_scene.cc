@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kWallBehind = 3;  // m behind the middle of the path
 
-// One stream a row, so that rows may be drawn by any thread.
+// One stream per row, so that rows may be drawn by any thread.
 void add_sensor_noise(ByteImage& picture, double sd, uint64_t seed, uint64_t camera_idx, uint64_t frame) {
   if (sd <= 0) return;
   parallel_for(static_cast<size_t>(picture.height()), 32, [&](size_t begin, size_t end) {

@@ -25,7 +25,7 @@ constexpr double kClose = 0.005;  // to the wanted intersection over union
 constexpr uint64_t kHoles = 5;
 constexpr double kLeastShare = 0.01;  // of the mesh's faces: a joint with fewer is no segment
 
-// One random stream a camera.
+// One random stream per camera.
 uint64_t stream_of(int camera_idx, uint64_t of_fault) { return 16 * static_cast<uint64_t>(camera_idx + 1) + of_fault; }
 
 Mask draw_faces(const PinholeCamera& camera, std::span<const Vector3f> vertices, std::span<const Face> faces) {
@@ -37,7 +37,7 @@ Mask draw_faces(const PinholeCamera& camera, std::span<const Vector3f> vertices,
   return mask;
 }
 
-// How tall the body would stand in the picture, as far away as it is in that pose. Pixels.
+// The height of the upright body in the picture, at its distance in that pose. Pixels.
 double height_in_picture(const SyntheticSequence& sequence, const PinholeCamera& camera, std::span<const double> pose) {
   Vector3f lower = Vector3f::Constant(1e9F), upper = Vector3f::Constant(-1e9F);
   for (const Vector3f& vertex : sequence.body->rest.vertices) {

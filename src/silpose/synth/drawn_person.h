@@ -1,5 +1,5 @@
-// draw_person(): somebody of a body's stature whose proportions are their own: bones and girths differ from the body's
-// as far as people's do (body/stretchable.h, body/girth.h). Threads: a function without state.
+// draw_person(): a person of a body's stature with other proportions: bones and girths differ from the body's as much
+// as people's do (body/stretchable.h, body/girth.h). Threads: a function without state.
 #pragma once
 
 #include <cstdint>

@@ -32,7 +32,7 @@ struct SceneOptions {
   double focal_px = 700;
   double distance_m = 5.5;  // from the middle of the clip's path
   std::vector<View> views = {{"front", 0}};
-  int lead_in = 0;  // frames before the motion in which nobody is there
+  int lead_in = 0;  // frames before the motion, without the subject
 };
 
 struct SyntheticSequence {

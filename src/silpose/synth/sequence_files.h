@@ -19,7 +19,7 @@ namespace silpose {
 // Writes into `directory`, which is created where it is missing; the caller gives it its final name afterwards. Frame
 // numbers and times count from the video's first image; frames of the lead-in have an empty mask and no rows.
 // Returns the number of frames written: fewer than there are when `progress` asked to stop, and the files describe
-// those. `masks`, one a camera, are written in place of the true ones; the tables stay true.
+// those. `masks`, one per camera, are written in place of the true ones; the tables stay true.
 // Errors: anything that cannot be written; throws std::invalid_argument for another number of `masks` than cameras.
 Result<int> write_sequence(const std::filesystem::path& directory, const SyntheticSequence& sequence,
                            const std::optional<ColourOptions>& colour = std::nullopt, ProgressSink* progress = nullptr,

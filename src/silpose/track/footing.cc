@@ -7,7 +7,7 @@ namespace silpose {
 namespace {
 
 constexpr double kSlideDeviation = 0.016;  // metres in a second; its square grows with time
-// At these a point no longer stands; below, the less so the nearer it comes.
+// From these on a point no longer rests on the floor; below, the less so the nearer it comes.
 constexpr double kHighest = 0.05, kFastest = 0.5;  // metres, metres per second
 
 // 1 at 0, 0 from 1 on. Source: Tukey's biweight.
@@ -21,7 +21,7 @@ double biweight(double ratio) {
 std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMotion& motion, const PointMotion& next,
                                 double dt_s) {
   std::vector<Foothold> holds;
-  for (const SkinPoint& point : points) {  // a body that reaches through the floor stands elsewhere
+  for (const SkinPoint& point : points) {  // a body that reaches through the floor is elsewhere
     if (motion.position(point.joint_idx, point.x_in_joint).y() < -kHighest) return holds;
   }
   size_t first_of_bone = 0;

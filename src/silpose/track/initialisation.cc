@@ -128,8 +128,7 @@ std::vector<Candidate> promising_variants(const Sight& sight, std::span<const Ca
   return chosen;
 }
 
-// What looks like the best starts and is far from them: two limbs that play each other's part cannot be mended one by
-// one.
+// Poses that look like the best starts and are far from them: two exchanged limbs cannot be corrected one by one.
 std::vector<Candidate> distant_variants(const Sight& sight, std::span<const Candidate> starts,
                                         const InitialisationOptions& options, uint64_t index) {
   std::vector<Candidate> chosen;
@@ -257,7 +256,8 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
     least = std::min(least, headings[h].front().fit.energy);
     std::ranges::move(headings[h], std::back_inserter(starts));
   }
-  // The best of all once more, against each other; then from what looks like them and is far away, while it helps.
+  // The best of all once more, against each other; then from poses that look like them and are far away, while it
+  // helps.
   uint64_t index = headings.size();
   search_limbs(sight, options, {index++, least, options.patience}, starts);
   for (int round = 0; round < options.num_distant_rounds && starts.front().fit.energy > kExplained; ++round) {
@@ -276,7 +276,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
     return -0.5 * c.cost() + facing_bonus * faces_camera(body, camera, view(c.fit.pose));
   };
   std::ranges::stable_sort(starts, std::greater<>{}, log_likelihood);
-  // The filter may go by silhouettes alone: what they like as well and keypoints contradict must not be among it.
+  // The filter may use silhouettes alone: poses that fit these as well but contradict the keypoints must be excluded.
   const auto keypoint_cost = [&](const Candidate& c) { return evidence.keypoint_cost(skeleton, view(c.fit.pose)); };
   const double worst = keypoint_cost(starts.front()) + kContradicted;
   std::erase_if(starts, [&](const Candidate& c) { return keypoint_cost(c) > worst; });

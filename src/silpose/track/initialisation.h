@@ -39,8 +39,8 @@ struct StartingPose {
   double log_likelihood = 0;  // with the bonus
 };
 
-// Starting poses, best first; at least one. Shapes: one observation a camera; candidates [K, D], whose root translation
-// is replaced. REQUIRES: an observation in which something was found.
+// Starting poses, best first; at least one. Shapes: one observation per camera; candidates [K, D], whose root
+// translation is replaced. REQUIRES: an observation in which something was found.
 std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
                                      std::span<const Observation> observations, const StateBatch& candidates,
                                      const InitialisationOptions& options = {});

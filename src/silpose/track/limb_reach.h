@@ -24,7 +24,7 @@ std::vector<LimbPoint> limb_points(const BodyModel& body, const Limb& limb);
 std::vector<Eigen::Vector3d> positions(const Skeleton& skeleton, std::span<const LimbPoint> points,
                                        std::span<const double> pose);
 
-// Moves the limb's DOF so that its points, but for the first, come nearest to `targets` (one a point), starting from
+// Moves the limb's DOF so that its points, but for the first, come nearest to `targets` (one per point), starting from
 // `pose` [D] and within the limits. Only what `seen` leaves of a distance counts. Returns the largest distance left.
 double reach_for(const Skeleton& skeleton, const Limb& limb, std::span<const LimbPoint> points,
                  std::span<const Eigen::Vector3d> targets, const Eigen::Matrix3d& seen, std::vector<double>& pose);

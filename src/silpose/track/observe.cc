@@ -6,8 +6,7 @@
 namespace silpose {
 namespace {
 
-// Every pixel keeps half of its say: where an outline is doubted altogether, a fit goes to where it need not explain
-// it.
+// Every pixel keeps half of its weight: where a whole outline is doubted, a fit goes to where it need not explain it.
 constexpr int kLeastSure = 128;
 
 }  // namespace

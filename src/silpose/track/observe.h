@@ -23,7 +23,7 @@ bool is_usable(const Observation& observation);
 bool any_is_usable(std::span<const Observation> observations);
 
 // Intersection over union of a pose's silhouette and the mask of the first camera that found something; 0 without one.
-// Shapes: a renderer of the body and an observation a camera.
+// Shapes: one renderer of the body and one observation per camera.
 double visual_accuracy(std::span<const BatchRenderer> renderers, std::span<const Observation> observations,
                        std::span<const double> pose);
 

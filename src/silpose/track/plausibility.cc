@@ -20,7 +20,7 @@ constexpr double kOverlapDeviation = 0.02;  // metres that two spheres overlap, 
 constexpr double kYield = 0.02;             // metres that flesh gives way
 constexpr double kNeighbours = 2;           // radii: along the bones; nearer spheres are of one fold of flesh
 constexpr double kFloorDeviation = 0.02;    // metres below the floor
-constexpr double kNoFloor = 0.2;  // metres below: the floor is not where it is said to be, and no longer pushes
+constexpr double kNoFloor = 0.2;            // metres below: the floor is not where it was assumed, and no longer pushes
 
 double add_limits(const Skeleton& skeleton, const VectorXd& pose, VectorXd& gradient, MatrixXd& hessian) {
   constexpr double kLimit = 1 / (kLimitDeviation * kLimitDeviation);
@@ -37,7 +37,7 @@ double add_limits(const Skeleton& skeleton, const VectorXd& pose, VectorXd& grad
   return cost;
 }
 
-// Student's t about rest: most poses are near it, and one that is not must not be torn back.
+// Student's t about rest: most poses are near it, and one that is not must not be pulled back.
 double add_rest(const Skeleton& skeleton, std::span<const double> deviation, double weight, const VectorXd& pose,
                 VectorXd& gradient, MatrixXd& hessian) {
   double cost = 0;

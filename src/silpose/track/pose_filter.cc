@@ -82,7 +82,7 @@ LikelihoodOptions cropped_options(const TrackerOptions& options) {
   return cropped;
 }
 
-// Poses that the network of the first camera with keypoints recognises, the best few; none where it is not asked.
+// Poses that the network of the first camera with keypoints recognises, the best few; none where it is not used.
 class Recognition {
  public:
   explicit Recognition(const TrackerOptions& options) : body_(options.body), cameras_(options.cameras) {
@@ -143,7 +143,7 @@ class JointFilter final : public PoseFilter {
 };
 
 // The thesis' two filters. Pose, with the root's rotation: on cropped silhouettes. Root: on the whole image, with the
-// pose just found. In this order the root answers for what is drawn, and no offset is left between the two.
+// pose just found. In this order the root is fitted to the pose that is drawn, and no offset is left between the two.
 class TwoFilters final : public PoseFilter {
  public:
   TwoFilters(const TrackerOptions& options, const Renderers& renderers)

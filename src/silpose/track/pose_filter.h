@@ -57,7 +57,7 @@ class PoseFilter {
   virtual void restore(std::string_view state) = 0;
 };
 
-// What filters compare with: renderers of the tracker's level of detail, one a camera, for those that sample; a fine
+// What filters compare with: renderers of the tracker's level of detail, one per camera, for those that sample; a fine
 // and a coarse mesh for those that fit, and the priors that these use. All of the same body in front of the same
 // cameras.
 struct Likelihoods {

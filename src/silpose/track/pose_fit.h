@@ -34,8 +34,8 @@ struct PoseFit {
 };
 
 struct PoseFitOptions {
-  double max_rotation = 0.35;    // radians a step
-  double max_translation = 0.3;  // metres a step
+  double max_rotation = 0.35;    // radians per step
+  double max_translation = 0.3;  // metres per step
   double rest_weight = 1;        // plausibility.h
 };
 

@@ -1,4 +1,4 @@
-// fit_size(): the size of a subject whom one camera sees standing on a known floor. One camera alone cannot distinguish
+// fit_size(): the size of a subject that one camera sees standing on a known floor. One camera alone cannot distinguish
 // a larger body further away from a smaller one nearby: poses tracked without a floor are right up to a scaling about
 // the camera's centre, and the right one has the feet on the floor. Threads: a function without state.
 #pragma once

@@ -99,8 +99,8 @@ class BlockTridiagonal {
 struct Linearised {
   double cost = 0;
   std::vector<VectorXd> gradient;  // [T] of half the cost
-  std::vector<MatrixXd> hessian;   // [T] of the frames alone, and what stands in them
-  std::vector<MatrixXd> across;    // [T] of what stands: from a frame (rows) to the one before
+  std::vector<MatrixXd> hessian;   // [T] of the frames alone, and what rests on the floor in them
+  std::vector<MatrixXd> across;    // [T] of what rests on the floor: from a frame (rows) to the one before
 };
 
 struct Point {
@@ -123,7 +123,7 @@ class Problem {
     for (double& deviation : acceleration_) deviation *= options.acceleration;
   }
 
-  // Decides what stands, until it is called again.
+  // Decides what rests on the floor, until it is called again.
   void find_footholds(const std::vector<VectorXd>& poses) {
     footholds_.assign(poses.size(), {});
     if (plausibility_.floor_points().empty()) return;

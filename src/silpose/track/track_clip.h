@@ -14,7 +14,7 @@
 
 namespace silpose {
 
-// What was seen at one instant: one observation a camera.
+// What was seen at one instant: one observation per camera.
 struct ClipInstant {
   int64_t frame_idx = 0;
   int64_t time_ns = 0;
@@ -34,7 +34,7 @@ struct ClipResume {
   std::function<void(const std::function<std::string()>& state)> keep;
 };
 
-// One report an instant that was tracked, in order. Times must grow.
+// One report per instant that was tracked, in order. Times must grow.
 // Errors: throws std::invalid_argument as TrackerOptions::check(), where observations do not fit the cameras, or for a
 // state of another call.
 std::vector<StepReport> track_clip(const TrackerOptions& options, std::span<const ClipInstant> clip,

@@ -1,4 +1,4 @@
-// Tracker: the method. One step a frame: predict, fit or sample, weigh by silhouettes and keypoints,
+// Tracker: the method. One step per frame: predict, fit or sample, weigh by silhouettes and keypoints,
 // estimate. No I/O.
 // Presets: `default`, a mixture of four hypotheses, each fitted to the silhouettes and predicted at constant velocity
 // (mixture_filter.h: bell1993, sminchisescu2003); `accurate`, the same with eight hypotheses on the whole mesh, which
@@ -31,10 +31,10 @@ class Tracker {
   Tracker(Tracker&&) noexcept;
   Tracker& operator=(Tracker&&) noexcept;
 
-  // Tracks one instant from masks. Shapes: one observation a camera. Times must grow.
+  // Tracks one instant from masks. Shapes: one observation per camera. Times must grow.
   StepReport step(std::span<const Observation> observations, int64_t frame_idx, int64_t time_ns);
 
-  // The same from pictures: segmented with an online background model, one a camera, that the tracker keeps.
+  // The same from pictures: segmented with an online background model, one per camera, that the tracker keeps.
   // Errors: throws std::runtime_error where an image has another size than the first.
   StepReport step(const Frame& frame);
 

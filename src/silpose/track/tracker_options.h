@@ -25,10 +25,10 @@ struct TrackerOptions {
   // size from distance, so it is added to the spread; several can.
   double size_deviation = 0;
   std::string preset = "default";  // "default", "accurate" or "thesis"; fills what is left unset below
-  // The fitted mixture; unset where a sampling filter is asked for.
+  // The fitted mixture; unset where a sampling filter is requested.
   std::optional<int> num_hypotheses;
   std::optional<bool> smooth;  // a batch fit over the clip afterwards; only track_clip() does it
-  std::optional<bool> floor;   // nothing lies below y = 0; smoothed, what stands on it does not slide
+  std::optional<bool> floor;   // nothing lies below y = 0; with smoothing, what rests on it does not slide
   // The sampling filters: preset thesis, or any other with one of the first two set.
   std::optional<int> num_particles;            // per layer; set alone it makes the filter plain
   std::optional<int> num_layers;               // 1: plain

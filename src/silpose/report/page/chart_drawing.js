@@ -1,4 +1,4 @@
-// How a chart is drawn. However long the clip, a curve has at most two points a pixel: of the steps that fall on one,
+// How a chart is drawn. However long the clip, a curve has at most two points per pixel: of the steps that fall on one,
 // the least and the greatest, so that no peak is lost.
 
 // Points of a curve in the time shown, in order: {x, low, high, below, above} with the values' extremes and those of

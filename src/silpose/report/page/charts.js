@@ -95,7 +95,7 @@ followers.push(step => {
   else charts.forEach(chart => chart.follow(step));
 });
 
-// The time shown: the whole clip, or so many seconds with the cursor in them.
+// The time shown: the whole clip, or this many seconds around the cursor.
 const spanChoice = byId("span");
 for (const length of [30, 10, 3, 1]) {
   if (count && times[count - 1] - times[0] > 1.5 * length) element("option", spanChoice, `${length} s`).value = length;

@@ -24,7 +24,7 @@ function seek(step) {
   if (!count) return;
   cursor = Math.min(count - 1, Math.max(0, step));
   if (hasVideo && Number.isFinite(video.duration)) {
-    // One picture a step, which stays until the next one's time.
+    // One picture per step, which stays until the next one's time.
     const until = cursor + 1 < count ? times[cursor + 1] - times[0] : video.duration;
     video.currentTime = Math.min((times[cursor] - times[0] + until) / 2, video.duration);
   }
@@ -92,7 +92,7 @@ slider.addEventListener("input", () => seek(Number(slider.value)));
 play.addEventListener("click", toggle);
 byId("transport").hidden = !count;
 
-// Space plays; arrows go a frame, with shift a second; Home and End. Elements with keys of their own keep them.
+// Space plays; arrows move by a frame, with shift by a second; Home and End. Elements with keys of their own keep them.
 document.addEventListener("keydown", event => {
   if (event.defaultPrevented || event.ctrlKey || event.metaKey || event.altKey) return;
   const tag = event.target.tagName;

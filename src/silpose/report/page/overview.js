@@ -1,7 +1,7 @@
 // The head of the page: is the track good, and where is it not?
 
 const typicalAccuracy = quantile(accuracy, 0.5);
-const accuracyDrop = 0.1;  // so far below the clip's median agreement is worth a look
+const accuracyDrop = 0.1;  // this far below the clip's median agreement is worth a look
 
 // Places worth a look: {first, last, text}, in order of time.
 function doubtfulPlaces() {
@@ -23,7 +23,7 @@ function doubtfulPlaces() {
   return places.sort((a, b) => a.first - b.first);
 }
 
-// Share of the frames with evidence in which an angle stands at its limit, to within a degree.
+// Share of the frames with evidence in which an angle is at its limit, to within a degree.
 function shareAtLimit({limits, values}) {
   if (!limits || !evidence.length) return 0;
   return evidence.filter(i => values[i] <= limits[0] + 1 || values[i] >= limits[1] - 1).length / evidence.length;

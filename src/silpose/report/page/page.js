@@ -1,5 +1,5 @@
-// The rest of the page: charts of the track's quality, the joints' curves by group, the masks, tables; and what sets
-// all off.
+// The rest of the page: charts of the track's quality, the joints' curves by group, the masks, tables; and the start of
+// all.
 
 function writeQuality() {
   const parent = byId("quality");
@@ -16,7 +16,7 @@ function writeQuality() {
     series: [{values, everywhere: true}]}));
 }
 
-// The curves of a group: one chart an angle, right and left ones together.
+// The curves of a group: one chart per angle, right and left ones together.
 const groups = [...new Set(dofs.map(dof => dof.group))];
 let fixedCharts = 0, chosenGroup = "";
 function showGroup(group) {

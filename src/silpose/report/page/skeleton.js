@@ -1,4 +1,5 @@
-// The body's bones in 3D on a floor, to be turned. World: Y up, metres; the view turns about the body's middle.
+// The body's bones in 3D on a floor, for interactive rotation. World: Y up, metres; the view turns about the body's
+// middle.
 
 // {yaw, pitch} in radians; `distance` of the eye in metres, `focal` in pixels. The eye is at
 // target + distance (sin yaw cos pitch, sin pitch, cos yaw cos pitch).
@@ -118,7 +119,7 @@ function turn(yaw, pitch, zoom = 1) {
   drawSkeleton();
 }
 
-// One pointer turns, two bring nearer.
+// One pointer rotates, two zoom.
 const pointers = new Map();
 skeletonCanvas.addEventListener("pointerdown", event => {
   skeletonCanvas.setPointerCapture(event.pointerId);

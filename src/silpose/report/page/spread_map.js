@@ -1,5 +1,5 @@
-// Which joint is uncertain, and when: a row a joint that turns, a column a piece of time, darker where the claimed 90 %
-// interval of its angles is wide. A click goes to that time and shows that joint's curves.
+// Which joint is uncertain, and when: one row per joint that turns, one column per piece of time, darker where the
+// claimed 90 % interval of its angles is wide. A click goes to that time and shows that joint's curves.
 
 const mapRowHeight = 17, mapValues = 52, mapAxis = 20;
 const mapJoints = [];  // {name, group, half: the widest of its angles at each step}
@@ -10,7 +10,8 @@ for (const dof of dofs.filter(d => d.isAngle)) {
 }
 for (const joint of mapJoints) joint.median = quantile(joint.half.filter((_, i) => hasEvidence(i)), 0.5);
 
-// Full colour: where only a twentieth of what is claimed is wider; 10 degrees at least, so that sure tracks look sure.
+// Full colour: where only a twentieth of what is claimed is wider; 10 degrees at least, so that certain tracks look
+// certain.
 const mapTop = Math.max(10, Math.ceil(quantile(mapJoints.flatMap(joint => {
   const stride = Math.max(1, Math.floor(count / 500));
   return Array.from({length: Math.ceil(count / stride)}, (_, k) => joint.half[k * stride]);
