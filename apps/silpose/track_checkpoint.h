@@ -42,7 +42,7 @@ struct TrackCheckpoint {
   uint32_t last_picture = 0;                     // picture_checksum() of the last of them
   std::string source;                            // ObservationSource::state()
   std::vector<MaskStrip> strips;                 // [C] TrackWriter::strips()
-  std::vector<std::vector<BesideMask>> seen;     // [T][C] of a clip that is tracked as a whole
+  std::vector<std::vector<MaskSidecar>> seen;    // [T][C] of a clip that is tracked as a whole
   std::vector<std::vector<double>> given_poses;  // [T][D] of the body as given, where it is fitted; empty: not yet
   std::vector<StepReport> reports;               // of each frame online, and of the whole clip once it is tracked
   std::string tracker;                           // Tracker::state(), or what track_clip() gave; empty: not begun

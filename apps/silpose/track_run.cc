@@ -222,8 +222,8 @@ class TrackRun {
       if (!instant) return instant.failure();
       if (!instant->has_value()) break;
       Instant& now = **instant;
-      std::vector<BesideMask>& beside = now_.seen.emplace_back();
-      for (const Observation& seen : now.observations) beside.push_back({seen.trust, seen.landmarks, seen.keypoints});
+      std::vector<MaskSidecar>& sidecars = now_.seen.emplace_back();
+      for (const Observation& seen : now.observations) sidecars.push_back({seen.trust, seen.landmarks, seen.keypoints});
       clip_.push_back({now.frame.index, now.frame.time_ns, now.observations});
       Result<void> written = writing_.give([this, seen = std::make_shared<Instant>(std::move(now))] {
         return writer_.add_masks(seen->frame, seen->observations);

@@ -52,7 +52,8 @@ Result<void> TrackWriter::add_masks(const Frame& frame, std::span<const Observat
   return {};
 }
 
-Result<std::vector<Observation>> TrackWriter::read_masks(int64_t frame_idx, std::span<const BesideMask> beside) const {
+Result<std::vector<Observation>> TrackWriter::read_masks(int64_t frame_idx,
+                                                         std::span<const MaskSidecar> sidecars) const {
   std::vector<Observation> observations(cameras_.size());
   for (size_t c = 0; c < cameras_.size(); ++c) {
     const auto file = file_of(kMaskFolder, c, frame_idx), of_confidence = file_of(kConfidenceFolder, c, frame_idx);
@@ -73,9 +74,9 @@ Result<std::vector<Observation>> TrackWriter::read_masks(int64_t frame_idx, std:
     }
     observations[c].box = mask->bounding_box();
     observations[c].mask = std::move(*mask);
-    observations[c].trust = beside[c].trust;
-    observations[c].landmarks = beside[c].landmarks;
-    observations[c].keypoints = beside[c].keypoints;
+    observations[c].trust = sidecars[c].trust;
+    observations[c].landmarks = sidecars[c].landmarks;
+    observations[c].keypoints = sidecars[c].keypoints;
   }
   return observations;
 }

@@ -28,7 +28,7 @@ inline constexpr const char* kFittedBodyFile = "fitted.body";
 inline constexpr std::string_view kConfidenceFolder = "confidence";
 
 // What an observation holds in addition to its mask and confidence.
-struct BesideMask {
+struct MaskSidecar {
   Trust trust;
   std::vector<SeenLandmark> landmarks;
   Keypoints3D keypoints;
@@ -51,7 +51,7 @@ class TrackWriter {
   // What add_masks() wrote of a frame, in this process or an earlier one. Shapes: the rest of each camera's
   // observation.
   // Errors: a picture that cannot be read or has another size.
-  Result<std::vector<Observation>> read_masks(int64_t frame_idx, std::span<const BesideMask> beside) const;
+  Result<std::vector<Observation>> read_masks(int64_t frame_idx, std::span<const MaskSidecar> sidecars) const;
 
   // The next picture of overlay.mp4, of the first camera at its time, with `pose` [D] drawn on it; empty:
   // nothing is. The floor around the subject, and its footprints, are drawn too where that was requested.

@@ -131,17 +131,17 @@ Observation observation_of(Mask mask) {
   return observation;
 }
 
-// Sure everywhere but where a mask is wrong, and within 2 pixels of that.
+// Full confidence but where a mask is wrong, and within 2 pixels of that.
 ByteImage confidence_of_faults(const Mask& mask, const Mask& truth) {
   constexpr int kReach = 2;
-  constexpr uint8_t kUnsure = 50;
+  constexpr uint8_t kLow = 50;
   ByteImage confidence(mask.width(), mask.height(), 1, 255);
   for (int y = 0; y < mask.height(); ++y) {
     for (int x = 0; x < mask.width(); ++x) {
       if (mask.get(x, y) == truth.get(x, y)) continue;
       for (int v = std::max(y - kReach, 0); v <= std::min(y + kReach, mask.height() - 1); ++v) {
         for (int u = std::max(x - kReach, 0); u <= std::min(x + kReach, mask.width() - 1); ++u) {
-          confidence.at(u, v) = kUnsure;
+          confidence.at(u, v) = kLow;
         }
       }
     }
@@ -149,7 +149,7 @@ ByteImage confidence_of_faults(const Mask& mask, const Mask& truth) {
   return confidence;
 }
 
-// Makes the body the subject's, as far as the instants tell it.
+// Makes the body the subject's, as far as the instants determine it.
 void fit_subject(TrackerOptions& options, std::span<const ClipInstant> instants, const ClipProgress& progress) {
   std::vector<std::vector<double>> poses;
   for (const StepReport& report : track_clip(options_before_fit(options), instants, progress)) {

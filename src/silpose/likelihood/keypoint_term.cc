@@ -34,7 +34,7 @@ Vector3d position(const Keypoint3D& keypoint) { return {keypoint.x[0], keypoint.
 
 }  // namespace
 
-bool KeypointTerm::tells_pose() const { return num_seen_ >= kFewestSeen; }
+bool KeypointTerm::determines_pose() const { return num_seen_ >= kFewestSeen; }
 
 KeypointTerm::KeypointTerm(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
                            const KeypointWeights& weights)
@@ -207,7 +207,7 @@ std::shared_ptr<const KeypointTerm> make_keypoint_term(const BodyModel& body, co
   if (kind == EvidenceKind::kKeypoints) weights.places = 1;
   if (!places) weights.places = 0;
   auto term = std::make_shared<const KeypointTerm>(body, camera, observation, weights);
-  return term->tells_pose() ? term : nullptr;
+  return term->determines_pose() ? term : nullptr;
 }
 
 }  // namespace silpose

@@ -39,7 +39,7 @@ class KeypointTerm {
   [[nodiscard]] size_t num_directions() const { return directions_.size(); }
   [[nodiscard]] bool empty() const { return places_.empty() && directions_.empty(); }
   // Whether enough of them are seen to determine the pose of the whole body.
-  [[nodiscard]] bool tells_pose() const;
+  [[nodiscard]] bool determines_pose() const;
 
   // -2 log-likelihood of a pose [D], up to a constant. `skeleton` has the joints of the body, and perhaps more DOF.
   [[nodiscard]] double cost(const Skeleton& skeleton, std::span<const double> pose) const;

@@ -103,7 +103,7 @@ TEST_F(KeypointTermTest, CountsOnlyWhatIsSeenAndTheBodyHas) {
   seen.landmarks[2].name = "tail";
   EXPECT_EQ(KeypointTerm(*body_, camera_, seen).num_places(), all - 3);
   seen.landmarks.resize(8);
-  EXPECT_FALSE(KeypointTerm(*body_, camera_, seen).tells_pose());
+  EXPECT_FALSE(KeypointTerm(*body_, camera_, seen).determines_pose());
 }
 
 // A silhouette hardly changes when a forearm points at the camera instead of away from it; its direction does.

@@ -41,14 +41,14 @@ TEST_F(BodyErrorTest, AddsNothingWhereTheBodyFits) {
   for (const double v : variance(1, {front_}).dofs) EXPECT_EQ(v, 0);
 }
 
-TEST_F(BodyErrorTest, ASizeThatIsUnsureIsADepthThatIsUnsure) {
+TEST_F(BodyErrorTest, UncertainSizeWidensDepth) {
   const auto one = variance(40, {front_});
   const double depth = std::sqrt(one.dofs[2]), across = std::sqrt(one.dofs[0]);
   EXPECT_GT(depth, 0.02);  // metres: more than half a percent of 5 m
   EXPECT_LT(across, 0.3 * depth);
 }
 
-TEST_F(BodyErrorTest, ASizeThatWasOnlyGuessedIsADepthThatIsUnsureHoweverWellTheOutlineFits) {
+TEST_F(BodyErrorTest, UnknownSizeWidensDepthHoweverWellTheOutlineFits) {
   const auto one = variance(1, {front_}, 0.05);
   EXPECT_NEAR(std::sqrt(one.dofs[2]), 0.05 * 5, 0.01);  // root_tz, 5 m before the camera
   EXPECT_NEAR(std::sqrt(one.dofs[0]), 0, 0.01);
@@ -60,7 +60,7 @@ TEST_F(BodyErrorTest, ASizeThatWasOnlyGuessedIsADepthThatIsUnsureHoweverWellTheO
   const double above_root = landmark_positions(*body_, pose_)[head_top].y() - landmark_positions(*body_, pose_)[0].y();
   EXPECT_NEAR(std::sqrt(one.landmarks.about_root[head_top].y()), 0.05 * above_root, 1e-3);
   EXPECT_NEAR(std::sqrt(one.landmarks.about_root[head_top].z()), 0, 0.01) << "the root is as far away as the head";
-  for (const double v : variance(1, {front_, side_}, 0.05).dofs) EXPECT_EQ(v, 0) << "two cameras tell the size";
+  for (const double v : variance(1, {front_, side_}, 0.05).dofs) EXPECT_EQ(v, 0) << "two cameras determine the size";
 }
 
 TEST_F(BodyErrorTest, ASecondCameraHelps) {

@@ -197,11 +197,12 @@ VectorXd stature_by_lengths(const BodyModel& body) {
   VectorXd stature(std::ssize(shape));
   for (size_t s = 0; s < shape.size(); ++s) {
     std::vector<double> lengths(shape.size(), 0.0);
-    double alike = 0;
+    double num_lengthened = 0;
     for (size_t other = 0; other < shape.size(); ++other) {
-      if (name(other) == name(s)) lengths[other] = kLonger, ++alike;
+      if (name(other) == name(s)) lengths[other] = kLonger, ++num_lengthened;
     }
-    stature[static_cast<Eigen::Index>(s)] = (with_lengths(body, lengths).height_m - body.height_m) / (kLonger * alike);
+    stature[static_cast<Eigen::Index>(s)] =
+        (with_lengths(body, lengths).height_m - body.height_m) / (kLonger * num_lengthened);
   }
   return stature;
 }

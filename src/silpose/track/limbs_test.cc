@@ -81,7 +81,7 @@ std::vector<double> walking_pose() {
 TEST(ReflectedLimb, KeepsWhereTheJointsAreSeenFromAfar) {
   const BodyModel& body = human();
   const std::vector<double> pose = walking_pose();
-  const Eigen::Vector3d eye(0, 1, 200);  // far: perspective does not tell
+  const Eigen::Vector3d eye(0, 1, 200);  // far: perspective is negligible
   const auto before = landmark_positions(body, pose);
   int found = 0;
   for (const Limb& limb : limbs_of(body.skeleton)) {
@@ -150,12 +150,12 @@ TEST(LimbVariants, MoveOneLimbOrTwoAndNothingElse) {
     Rng rng(5);
     return limb_variants(body, limbs, pose, eye, num_random, two_at_once, rng);
   };
-  const auto told = with(0, 0);  // reflections and exchanges come first
+  const auto given = with(0, 0);  // reflections and exchanges come first
   for (const double two_at_once : {0.0, 0.5, 1.0}) {
     const auto variants = with(40, two_at_once);
-    ASSERT_EQ(variants.size(), told.size() + 40);
+    ASSERT_EQ(variants.size(), given.size() + 40);
     int64_t pairs = 0;
-    for (size_t v = told.size(); v < variants.size(); ++v) {
+    for (size_t v = given.size(); v < variants.size(); ++v) {
       pairs += std::ssize(variants[v].limbs) - 1;
       for (size_t d = 0; d < pose.size(); ++d) {
         const bool own = std::ranges::any_of(variants[v].limbs, [&](size_t l) {

@@ -15,7 +15,7 @@ using testing::IsEmpty;
 class OpenQuestions : public testing::Test {
  protected:
   static const BodyModel& human() { return *human_for_test(); }
-  // Two seconds at 20 a second, all angles known to one degree.
+  // Two seconds at 20 per second, all angles known to one degree.
   std::vector<StepReport> reports() const {
     std::vector<StepReport> made(40);
     for (size_t t = 0; t < made.size(); ++t) {

@@ -75,7 +75,7 @@ TEST_F(RecoveryTest, SeeksTheWholeBodyAnew) {
   EXPECT_LT(off_in_the_end(wrong), 0.1);
 }
 
-// Seen from behind; a silhouette does not tell.
+// Seen from behind; a silhouette does not show it.
 TEST_F(RecoveryTest, FacesWhereLandmarksSaySoAndStaysSoWhereTheyAreWrongForAMoment) {
   TrackerOptions options;
   options.body = body_;

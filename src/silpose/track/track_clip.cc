@@ -130,7 +130,7 @@ class ClipTracker {
       if (apart) starts.push_back(t);
       if (starts.size() == kNumStarts) break;
     }
-    // Passes start anew, so a coarse mesh will do to choose.
+    // Passes start from scratch, so a coarse mesh will do to choose.
     const auto body = level_of_detail(options_.body, *options_of_pass(options_).lod_vertices);
     const CoverageLikelihood likelihood(body, options_.cameras);
     const Plausibility plausibility(body, *options_.floor);
@@ -174,7 +174,7 @@ class ClipTracker {
         }
       }
       if (!proceed(done_ + share / static_cast<double>(count))) return;
-      tell();
+      keep_state();
     }
     noise_ = tracker_->noise();
     tracker_.reset();
@@ -182,11 +182,11 @@ class ClipTracker {
     ++pass_;
   }
 
-  void tell() const {
+  void keep_state() const {
     if (resume_.keep) resume_.keep([this] { return state(); });
   }
   std::vector<StepReport> report_and_stop() const {
-    tell();
+    keep_state();
     return {};
   }
 

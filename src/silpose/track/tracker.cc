@@ -231,7 +231,7 @@ struct Tracker::Impl {
   std::vector<BatchRenderer> seen_by, expected_by;  // [C] the whole mesh, and a coarse one
   std::unique_ptr<PoseFilter> filter;
   std::vector<std::shared_ptr<const Proposal>> for_start;  // [C]
-  std::vector<std::unique_ptr<Segmenter>> segmenters;      // online, one a camera; made when first needed
+  std::vector<std::unique_ptr<Segmenter>> segmenters;      // online, one per camera; made when first needed
   std::vector<double> last_pose;
   bool started = false;
   int num_reinitialisations = 0;
