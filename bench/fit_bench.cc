@@ -37,7 +37,6 @@ std::vector<Case> make_cases(const CoverageLikelihood& likelihood) {
     }
     Observation observation;
     observation.mask = render_silhouette(body, likelihood.cameras()[0], truth);
-    observation.box = observation.mask.bounding_box();
     cases.push_back({likelihood.prepare(std::vector{observation}, kBlur, kBlur), std::move(pose)});
   }
   return cases;

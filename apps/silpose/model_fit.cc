@@ -54,8 +54,8 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
   tracker.preset = "accurate";
   tracker.size_deviation = size_deviation_of(options.model);
   tracker.seed = common.seed;
-  tracker.landmarks = source->finds_landmarks();
-  if (source->finds_landmarks()) tracker.evidence = EvidenceKind::kBoth;
+  tracker.landmarks = source->finds_keypoints();
+  if (source->finds_keypoints()) tracker.evidence = EvidenceKind::kBoth;
   const std::optional<BodyFit> fit = fit_subject(tracker, *clip, poses_as_given(tracker, *clip, console), console);
   if (Console::interrupted()) return error("interrupted: nothing is written");
   if (!fit) return error("{}: no body fitted: {}", source->video().name(), why_not_fitted(tracker));

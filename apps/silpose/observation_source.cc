@@ -12,7 +12,6 @@
 #include "silpose/base/clock.h"
 #include "silpose/base/state_bytes.h"
 #include "silpose/image/image_file.h"
-#include "silpose/track/observe.h"
 
 namespace silpose::app {
 namespace {
@@ -127,7 +126,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
       ->allow_extra_args(false);
   command
       .add_option("--garbage-mask", options.garbage_masks,
-                  "A picture: what is not white in it is removed from the mask")
+                  "A picture: what is not white in it is removed from the mask and does not count")
       ->allow_extra_args(false);
   command.add_option("--grow", options.grow_px, "Grows the mask by this many pixels; negative shrinks")
       ->capture_default_str()
@@ -300,11 +299,11 @@ Result<std::optional<Instant>> ObservationSource::read(bool segments) {
     for (size_t camera = 0; camera < segmenters_.size(); ++camera) {
       if (!(wanted && segments) && !segmenters_[camera]->sees_all()) continue;
       const Stopwatch segmenting;
-      Result<Segmentation> segmentation =
+      Result<Observation> seen =
           segmenters_[camera]->segment((*frame)->images[camera], video_->own_index(static_cast<int>(camera)));
       instant.segment_s += segmenting.seconds();
-      if (!segmentation) return segmentation.failure();
-      if (wanted) instant.observations.push_back(observation_from(std::move(*segmentation)));
+      if (!seen) return seen.failure();
+      if (wanted) instant.observations.push_back(std::move(*seen));
     }
     if (!wanted) {
       if (Console::interrupted()) return std::optional<Instant>();
@@ -346,8 +345,8 @@ std::string ObservationSource::background() const {
   return names;
 }
 
-bool ObservationSource::finds_landmarks() const {
-  return std::ranges::any_of(segmenters_, [](const auto& segmenter) { return segmenter->finds_landmarks(); });
+bool ObservationSource::finds_keypoints() const {
+  return std::ranges::any_of(segmenters_, [](const auto& segmenter) { return segmenter->finds_keypoints(); });
 }
 
 std::vector<std::string> ObservationSource::warnings() const {

@@ -14,9 +14,9 @@
 #include "apps/silpose/console.h"
 #include "silpose/base/job_line.h"
 #include "silpose/base/result.h"
+#include "silpose/image/observation.h"
 #include "silpose/image/video.h"
 #include "silpose/segment/segmenter.h"
-#include "silpose/shape/observation.h"
 
 namespace silpose::app {
 
@@ -76,8 +76,12 @@ class ObservationSource {
   [[nodiscard]] std::vector<PictureSize> sizes() const;
   // How many instants next() will give, where that is known; 0 otherwise.
   [[nodiscard]] int64_t num_expected() const;
-  [[nodiscard]] std::string background() const;                    // "background auto", "masks", ... of each camera
-  [[nodiscard]] bool finds_landmarks() const;                      // of any camera
+  [[nodiscard]] std::string background() const;  // "background auto", "masks", ... of each camera
+  [[nodiscard]] bool finds_keypoints() const;
+  // Observation::ignored of a camera.
+  [[nodiscard]] std::shared_ptr<const Mask> ignored(size_t camera) const {
+    return segmenters_[camera]->ignored();
+  }                                                                // of any camera
   [[nodiscard]] std::vector<std::string> warnings() const;         // whole only after the last next()
   [[nodiscard]] double learning_s() const { return learning_s_; }  // time spent before the first instant
 

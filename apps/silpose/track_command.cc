@@ -34,7 +34,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
   if (!cameras) return cameras.failure();
   Result<ObservationSource> source = ObservationSource::open(options.input, console);
   if (!source) return source.failure();
-  options.fit_body = fits_body(options, source->finds_landmarks());
+  options.fit_body = fits_body(options, source->finds_keypoints());
   if (estimates_camera(options)) {
     const Result<void> estimated = estimate_camera_of(*source, (*body)->height_m, *cameras, console);
     if (!estimated) return estimated.failure();
@@ -52,16 +52,16 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
     if (!*earlier && !options.each) console.message(fmt::format("{}: nothing to resume from", resume.folder.string()));
     resume.earlier = std::move(*earlier);
   }
-  if (options.init == "landmarks" && !source->finds_landmarks()) {
+  if (options.init == "landmarks" && !source->finds_keypoints()) {
     return error("--init landmarks: {} finds none; --segmenter learned does", source->background());
   }
-  if (options.evidence == "landmarks" && !source->finds_landmarks()) {
+  if (options.evidence == "landmarks" && !source->finds_keypoints()) {
     return error("--evidence landmarks: {} finds none; --segmenter learned does", source->background());
   }
-  if (tracker.regenerate_from == "network" && !source->finds_landmarks()) {
+  if (tracker.regenerate_from == "network" && !source->finds_keypoints()) {
     return error("--regenerate-from network: {} finds no keypoints; --segmenter learned does", source->background());
   }
-  tracker.landmarks = (options.init == "auto" || options.init == "landmarks") && source->finds_landmarks();
+  tracker.landmarks = (options.init == "auto" || options.init == "landmarks") && source->finds_keypoints();
 
   TrackWriter writer(directory->path(), *body, cameras->cameras, source->video().fps(), options.draw_floor);
   Result<Tracked> tracked = track_video(options, std::move(tracker), *source, writer, console, std::move(resume));

@@ -159,10 +159,10 @@ void check_together(const TrackOptions& options) {
   }
 }
 
-bool fits_body(const TrackOptions& options, bool finds_landmarks) {
+bool fits_body(const TrackOptions& options, bool finds_keypoints) {
   const bool one_camera = options.each || options.input.videos.size() == 1;
   const bool bones_determined =
-      options.evidence != "landmarks" && (!one_camera || (options.evidence == "both" && finds_landmarks));
+      options.evidence != "landmarks" && (!one_camera || (options.evidence == "both" && finds_keypoints));
   if (options.fit_body.value_or(false) && !bones_determined && !options.camera.has_file()) {
     throw UsageError(
         "--fit-body: with one camera, bones need keypoints, which --segmenter learned finds, and the size needs a "

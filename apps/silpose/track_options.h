@@ -35,7 +35,7 @@ void check_together(const TrackOptions& options);
 
 // Whether the body is fitted to the subject: where requested, and by `accurate` where bone lengths can be determined.
 // Throws UsageError where it is requested and nothing can be determined.
-bool fits_body(const TrackOptions& options, bool finds_landmarks);
+bool fits_body(const TrackOptions& options, bool finds_keypoints);
 
 // Whether the camera is estimated: of one recorded clip without a calibration file.
 bool estimates_camera(const TrackOptions& options);

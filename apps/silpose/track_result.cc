@@ -93,7 +93,7 @@ Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path
   run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
   run["background"] = finished.source.background();
   run["start_by_landmarks"] = tracked.used.landmarks;
-  run["evidence"] = finished.source.finds_landmarks() ? finished.options.evidence : "silhouette";
+  run["evidence"] = finished.source.finds_keypoints() ? finished.options.evidence : "silhouette";
   run["cameras"] = nlohmann::ordered_json::array();
   for (const PinholeCamera& camera : finished.writer.cameras()) run["cameras"].push_back(camera.name);
   run["doubtful"] = tracked.doubtful;

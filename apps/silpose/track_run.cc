@@ -109,6 +109,7 @@ class TrackRun {
       if (earlier.seen.empty()) continue;
       auto seen = writer_.read_masks(last, earlier.seen.at(static_cast<size_t>(n)));
       if (!seen) return seen.failure();
+      for (size_t c = 0; c < seen->size(); ++c) (*seen)[c].ignored = source_.ignored(c);
       clip_.push_back({last, (*frame)->time_ns, std::move(*seen)});
     }
     source_.restore(earlier.source);
@@ -223,7 +224,8 @@ class TrackRun {
       if (!instant->has_value()) break;
       Instant& now = **instant;
       std::vector<MaskSidecar>& sidecars = now_.seen.emplace_back();
-      for (const Observation& seen : now.observations) sidecars.push_back({seen.trust, seen.landmarks, seen.keypoints});
+      for (const Observation& seen : now.observations)
+        sidecars.push_back({seen.trust, seen.keypoints_2d, seen.keypoints_3d});
       clip_.push_back({now.frame.index, now.frame.time_ns, now.observations});
       Result<void> written = writing_.give([this, seen = std::make_shared<Instant>(std::move(now))] {
         return writer_.add_masks(seen->frame, seen->observations);

@@ -72,11 +72,10 @@ Result<std::vector<Observation>> TrackWriter::read_masks(int64_t frame_idx,
       return error("{}: {}x{}, the pictures {}x{}", file.string(), mask->width(), mask->height(), cameras_[c].width,
                    cameras_[c].height);
     }
-    observations[c].box = mask->bounding_box();
     observations[c].mask = std::move(*mask);
     observations[c].trust = sidecars[c].trust;
-    observations[c].landmarks = sidecars[c].landmarks;
-    observations[c].keypoints = sidecars[c].keypoints;
+    observations[c].keypoints_2d = sidecars[c].keypoints_2d;
+    observations[c].keypoints_3d = sidecars[c].keypoints_3d;
   }
   return observations;
 }

@@ -14,11 +14,11 @@
 #include "silpose/base/result.h"
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
+#include "silpose/image/observation.h"
 #include "silpose/image/video.h"
 #include "silpose/recording/track_recorder.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/report/mask_strip.h"
-#include "silpose/shape/observation.h"
 
 namespace silpose::app {
 
@@ -30,10 +30,10 @@ inline constexpr std::string_view kConfidenceFolder = "confidence";
 // What an observation holds in addition to its mask and confidence.
 struct MaskSidecar {
   Trust trust;
-  std::vector<SeenLandmark> landmarks;
-  Keypoints3D keypoints;
+  std::vector<Keypoint2D> keypoints_2d;
+  Keypoints3D keypoints_3d;
 
-  static auto members(auto& b) { return std::tie(b.trust, b.landmarks, b.keypoints); }
+  static auto members(auto& b) { return std::tie(b.trust, b.keypoints_2d, b.keypoints_3d); }
 };
 
 class TrackWriter {

@@ -6,7 +6,6 @@
 
 #include "silpose/image/video.h"
 #include "silpose/segment/segmenter.h"
-#include "silpose/track/observe.h"
 
 namespace silpose {
 namespace {
@@ -47,12 +46,12 @@ Result<const ClipReader::Segmented*> ClipReader::segment(const ClipInput& input,
       now.is_whole = true;
       break;
     }
-    Result<Segmentation> segmentation = (*segmenter)->segment((*frame)->images[0], (*frame)->index);
-    if (!segmentation) return segmentation.failure();
+    Result<Observation> seen = (*segmenter)->segment((*frame)->images[0], (*frame)->index);
+    if (!seen) return seen.failure();
     ++num_segmented_;
     now.indices.push_back((*frame)->index);
     now.times_ns.push_back((*frame)->time_ns);
-    now.seen.push_back(observation_from(std::move(*segmentation)));
+    now.seen.push_back(std::move(*seen));
     now.bytes += bytes_of(now.seen.back());
   }
   if (now.seen.empty()) return error("{}: no frame in it", path);

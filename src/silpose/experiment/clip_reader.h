@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "silpose/base/result.h"
-#include "silpose/shape/observation.h"
+#include "silpose/image/observation.h"
 #include "silpose/track/track_clip.h"
 
 namespace silpose {

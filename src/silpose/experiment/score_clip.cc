@@ -208,12 +208,12 @@ Recorded recorded_keypoints(const BodyModel& body, const PinholeCamera& camera, 
   const std::vector<std::string> names = landmark_names(body);
   for (const ClipInstant& instant : clip) {
     const Observation& seen = instant.observations[0];
-    if (seen.keypoints.empty()) continue;
-    const Eigen::Matrix3d world_from_points = world_from_keypoints(camera, seen.keypoints);
-    for (const Keypoint3D& point : seen.keypoints.points) {
+    if (seen.keypoints_3d.empty()) continue;
+    const Eigen::Matrix3d world_from_points = world_from_keypoints(camera, seen.keypoints_3d);
+    for (const Keypoint3D& point : seen.keypoints_3d.points) {
       if (std::ranges::find(names, point.name) == names.end()) continue;
-      const auto landmark = std::ranges::find(seen.landmarks, point.name, &SeenLandmark::name);
-      const bool is_seen = landmark != seen.landmarks.end();
+      const auto landmark = std::ranges::find(seen.keypoints_2d, point.name, &Keypoint2D::name);
+      const bool is_seen = landmark != seen.keypoints_2d.end();
       result.joints->rows.push_back(
           {.frame = instant.frame_idx,
            .time_s = static_cast<double>(instant.time_ns) * 1e-9,

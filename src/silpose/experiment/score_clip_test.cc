@@ -140,14 +140,14 @@ TEST(ScoreKeypoints, AreTurnedIntoTheWorldsAxes) {
   const auto names = landmark_names(leg);
   const auto places = landmark_positions(leg, std::vector<double>{0, to_radians(kTrueBend_deg + 5)});
   Observation seen;
-  seen.keypoints.centre_x = camera.cx;
-  seen.keypoints.centre_y = camera.cy;
+  seen.keypoints_3d.centre_x = camera.cx;
+  seen.keypoints_3d.centre_y = camera.cy;
   for (size_t i = 1; i < names.size(); ++i) {
     const Eigen::Vector3d x = camera.cam_from_world.rotation * (places[i] - Eigen::Vector3d(0, 1, 0));
-    seen.keypoints.points.push_back({names[i], {x.x(), x.y(), x.z()}, 1});
+    seen.keypoints_3d.points.push_back({names[i], {x.x(), x.y(), x.z()}, 1});
   }
-  seen.keypoints.points.push_back({"nose", {0, 0, 0}, 1});
-  seen.landmarks = {{"right_shin", 4, 6, 1}};  // the truth's are at (1, 2)
+  seen.keypoints_3d.points.push_back({"nose", {0, 0, 0}, 1});
+  seen.keypoints_2d = {{"right_shin", 4, 6, 1}};  // the truth's are at (1, 2)
   const std::vector<ClipInstant> clip = {{0, 0, {seen}}, {1, 100'000'000, {Observation()}}};
   const RunResult run = score_keypoints(truth_of(leg, 2), leg, camera, clip).value();
   EXPECT_NEAR(run.scores.at("knee_error_deg"), 5, 1e-6);

@@ -118,35 +118,29 @@ Result<std::vector<Mask>> masks_of(const SyntheticSequence& sequence, int camera
 
 // What a segmenter would hand over.
 Observation observation_of(Mask mask) {
-  Observation observation;
-  observation.box = mask.bounding_box();
-  if (observation.box.empty()) {
-    observation.trust = {.overall = 0, .nothing_found = true};
-  } else {
-    observation.trust.touches_border = observation.box.x == 0 || observation.box.y == 0 ||
-                                       observation.box.x + observation.box.width == mask.width() ||
-                                       observation.box.y + observation.box.height == mask.height();
-  }
-  observation.mask = std::move(mask);
+  Observation observation{std::move(mask)};
+  const Box box = observation.box();
+  const auto& [x, y, width, height] = box;
+  observation.trust.nothing_found = box.empty();
+  observation.trust.overall = box.empty() ? 0 : 1;
+  observation.trust.touches_border = !box.empty() && (x == 0 || y == 0 || x + width == observation.mask.width() ||
+                                                      y + height == observation.mask.height());
   return observation;
 }
 
-// Full confidence but where a mask is wrong, and within 2 pixels of that.
-ByteImage confidence_of_faults(const Mask& mask, const Mask& truth) {
+// The pixels in which a mask is wrong, and those within 2 pixels of them.
+Mask faults_of(const Mask& mask, const Mask& truth) {
   constexpr int kReach = 2;
-  constexpr uint8_t kLow = 50;
-  ByteImage confidence(mask.width(), mask.height(), 1, 255);
+  Mask faults(mask.width(), mask.height());
   for (int y = 0; y < mask.height(); ++y) {
     for (int x = 0; x < mask.width(); ++x) {
       if (mask.get(x, y) == truth.get(x, y)) continue;
       for (int v = std::max(y - kReach, 0); v <= std::min(y + kReach, mask.height() - 1); ++v) {
-        for (int u = std::max(x - kReach, 0); u <= std::min(x + kReach, mask.width() - 1); ++u) {
-          confidence.at(u, v) = kLow;
-        }
+        for (int u = std::max(x - kReach, 0); u <= std::min(x + kReach, mask.width() - 1); ++u) faults.set(u, v);
       }
     }
   }
-  return confidence;
+  return faults;
 }
 
 // Makes the body the subject's, as far as the instants determine it.
@@ -257,13 +251,13 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
     for (size_t t = 0; t < masks->size(); ++t) {
       Observation observation = observation_of(std::move((*masks)[t]));
       if (network && !observation.trust.nothing_found) {
-        SimulatedKeypoints::Seen drawn = network->draw(static_cast<int>(t), observation.box);
-        observation.landmarks = std::move(drawn.landmarks);
-        observation.keypoints = std::move(drawn.keypoints);
+        SimulatedKeypoints::Seen drawn = network->draw(static_cast<int>(t), observation.box());
+        observation.keypoints_2d = std::move(drawn.keypoints_2d);
+        observation.keypoints_3d = std::move(drawn.keypoints_3d);
       }
       if (settings.faults_known && settings.mask_noise != "none") {
         const Mask truth = true_mask(seen.sequence, static_cast<int>(c), static_cast<int>(t));
-        observation.confidence = confidence_of_faults(observation.mask, truth);
+        observation.ignored = std::make_shared<const Mask>(faults_of(observation.mask, truth));
       }
       seen.instants[t].observations.push_back(std::move(observation));
     }

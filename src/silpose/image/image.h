@@ -15,8 +15,7 @@ template <class T>
 class Image {
  public:
   Image() = default;
-  Image(int width, int height, int channels = 1, T fill = T{})
-      : width_(width), height_(height), channels_(channels) {
+  Image(int width, int height, int channels = 1, T fill = T{}) : width_(width), height_(height), channels_(channels) {
     check(width >= 0 && height >= 0 && channels >= 1, "Image: size {}x{}x{}", width, height, channels);
     data_.assign(static_cast<size_t>(width) * static_cast<size_t>(height) * static_cast<size_t>(channels), fill);
   }
@@ -48,5 +47,6 @@ class Image {
 };
 
 using ByteImage = Image<uint8_t>;
+using DepthImage = Image<uint16_t>;  // [H, W] millimetres along the viewing axis; 0: not measured
 
 }  // namespace silpose

@@ -21,9 +21,7 @@ Result<ByteImage> read_colour_image(const std::filesystem::path& path);  // 3 ch
 Result<ByteImage> read_grey_image(const std::filesystem::path& path);    // 1 channel
 Result<Mask> read_mask(const std::filesystem::path& path);               // white (>= 128) is set
 
-// Millimetres along the viewing axis, 0 where unknown; 16 bits. Errors: as above; not one channel of 16 bits; not
-// writable.
-using DepthImage = Image<uint16_t>;
+// Errors: as above; not one channel of 16 bits; not writable.
 Result<DepthImage> read_depth_image(const std::filesystem::path& path);
 Result<void> write_depth_image(const std::filesystem::path& path, const DepthImage& image);
 

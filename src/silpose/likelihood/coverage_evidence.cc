@@ -57,10 +57,11 @@ CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observ
           observation.mask.height(), camera.name, camera.width, camera.height);
     CoverageEvidence::View& view = evidence.views.emplace_back();
     evidence.noise.push_back(0);
-    if (observation.trust.nothing_found || observation.box.empty()) continue;
+    const Box box = observation.box();
+    if (observation.trust.nothing_found || box.empty()) continue;
     view.trust = observation.trust.overall;
     view.keypoints = make_keypoint_term(body(), camera, observation, kind);
-    const double extent = std::max(observation.box.height, observation.box.width);
+    const double extent = std::max(box.height, box.width);
     view.pixel_unit = std::max(extent / CoverageEvidence::kSubjectHeight, 0.25);
     view.outline_length = outline_length(observation.mask);
     evidence.noise.back() = kExactNoise * std::pow(view.pixel_unit, 3);

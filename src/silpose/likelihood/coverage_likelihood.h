@@ -27,8 +27,8 @@
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/image/image.h"
+#include "silpose/image/observation.h"
 #include "silpose/likelihood/keypoint_term.h"
-#include "silpose/shape/observation.h"
 
 namespace silpose {
 

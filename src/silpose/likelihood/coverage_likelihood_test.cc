@@ -18,7 +18,6 @@ namespace {
 
 Observation observation_of(Mask mask) {
   Observation observation;
-  observation.box = mask.bounding_box();
   observation.mask = std::move(mask);
   return observation;
 }
@@ -214,14 +213,19 @@ TEST(CoverageLikelihood, IgnoresWhereItIsNotConfident) {
   for (int y = 0; y < 60; ++y) {
     for (int x = 0; x < 80; ++x) observation.mask.set(x, y);
   }
-  observation.box = observation.mask.bounding_box();
   const double fooled = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
+  Mask ignored(320, 240);
   observation.confidence = ByteImage(320, 240, 1, 255);
   for (int y = 0; y < 60; ++y) {
-    for (int x = 0; x < 80; ++x) observation.confidence.at(x, y) = 0;
+    for (int x = 0; x < 80; ++x) observation.confidence.at(x, y) = 0, ignored.set(x, y);
   }
+  const double doubted = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
+  EXPECT_LT(doubted, 0.6 * fooled);
+  EXPECT_GT(doubted, 0.1 * fooled) << "doubtful pixels keep half of their weight";
+  observation.confidence = {};
+  observation.ignored = std::make_shared<const Mask>(ignored);
   const double warned = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
-  EXPECT_LT(warned, 0.1 * fooled);
+  EXPECT_LT(warned, 0.01 * fooled);
 }
 
 TEST(CoverageLikelihood, RefusesAMaskOfAnotherSize) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "silpose/base/check.h"
 
@@ -36,7 +37,7 @@ CoverageEvidence::Raster coverage_raster(const Observation& observation, int cel
   raster.height = cells_along(mask.height(), cell);
   raster.observed.resize(raster.at(raster.width, 0));
   const float one_pixel = 1.0f / static_cast<float>(cell * cell);
-  const Box& box = observation.box;
+  const Box box = observation.box();
   raster.occupied = {box.x / cell, box.y / cell, (box.x + box.width - 1) / cell - box.x / cell + 1,
                      (box.y + box.height - 1) / cell - box.y / cell + 1};
   for (int y = box.y; y < box.y + box.height; ++y) {
@@ -46,18 +47,26 @@ CoverageEvidence::Raster coverage_raster(const Observation& observation, int cel
           one_pixel * static_cast<float>(count_set(words, x * cell, (x + 1) * cell));
     }
   }
-  if (!observation.confidence.empty()) {
-    check(observation.confidence.width() == mask.width() && observation.confidence.height() == mask.height(),
-          "coverage_raster: confidence of {}x{} for a mask of {}x{}", observation.confidence.width(),
-          observation.confidence.height(), mask.width(), mask.height());
-    raster.confidence.resize(raster.observed.size());
-    for (int y = 0; y < mask.height(); ++y) {
-      const auto row = observation.confidence.row(y);
-      for (int cell_x = 0, x = 0; cell_x < raster.width; ++cell_x) {
-        int sum = 0;
-        for (const int end = std::min(x + cell, mask.width()); x < end; ++x) sum += row[static_cast<size_t>(x)];
-        raster.confidence[raster.at(cell_x, y / cell)] += static_cast<float>(sum) * (one_pixel / 255.0f);
+  if (observation.confidence.empty() && !observation.ignored) return raster;
+  check_sizes(observation);
+  raster.confidence.resize(raster.observed.size());
+  std::vector<uint8_t> weights(static_cast<size_t>(mask.width()), 255), ignored(weights.size());
+  for (int y = 0; y < mask.height(); ++y) {
+    if (!observation.confidence.empty())
+      std::ranges::transform(observation.confidence.row(y), weights.begin(), pixel_weight);
+    if (observation.ignored) {
+      bytes_from_bits(observation.ignored->row(y), ignored);
+      for (size_t x = 0; x < weights.size(); ++x) {
+        if (ignored[x] != 0)
+          weights[x] = 0;
+        else if (observation.confidence.empty())
+          weights[x] = 255;
       }
+    }
+    for (int cell_x = 0, x = 0; cell_x < raster.width; ++cell_x) {
+      int sum = 0;
+      for (const int end = std::min(x + cell, mask.width()); x < end; ++x) sum += weights[static_cast<size_t>(x)];
+      raster.confidence[raster.at(cell_x, y / cell)] += static_cast<float>(sum) * (one_pixel / 255.0f);
     }
   }
   return raster;

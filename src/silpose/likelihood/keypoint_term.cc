@@ -42,8 +42,8 @@ KeypointTerm::KeypointTerm(const BodyModel& body, const PinholeCamera& camera, c
   const double height_px = std::sqrt(kSquarePerArea * static_cast<double>(observation.mask.count()));
   deviation_px_ = std::max(1.0, kPlaceDeviation * height_px);
   add_places(body, observation, weights.places);
-  if (weights.directions > 0 && !observation.keypoints.empty()) {
-    add_directions(body, observation.keypoints, weights.directions);
+  if (weights.directions > 0 && !observation.keypoints_3d.empty()) {
+    add_directions(body, observation.keypoints_3d, weights.directions);
   }
 }
 
@@ -64,7 +64,7 @@ std::optional<size_t> KeypointTerm::point_of(const BodyModel& body, std::string_
 }
 
 void KeypointTerm::add_places(const BodyModel& body, const Observation& observation, double weight) {
-  for (const SeenLandmark& seen : observation.landmarks) {
+  for (const Keypoint2D& seen : observation.keypoints_2d) {
     if (!(seen.visibility >= kLeastVisible)) continue;
     if (!(seen.x >= 0 && seen.x < camera_.width && seen.y >= 0 && seen.y < camera_.height)) continue;
     const auto point = point_of(body, seen.name);

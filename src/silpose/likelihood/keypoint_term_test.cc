@@ -35,17 +35,17 @@ class KeypointTermTest : public testing::Test {
     for (size_t i = 0; i < names.size(); ++i) {
       const Eigen::Vector2d pixel =
           camera_.project(positions[i]).value() + noise_px * Eigen::Vector2d(rng.normal(), rng.normal());
-      seen.landmarks.push_back({names[i], pixel.x(), pixel.y()});
+      seen.keypoints_2d.push_back({names[i], pixel.x(), pixel.y()});
       least = least.cwiseMin(pixel), most = most.cwiseMax(pixel);
     }
-    const double height = most.y() - least.y();
-    seen.box = {static_cast<int>(least.x()), static_cast<int>(least.y()), static_cast<int>(most.x() - least.x()),
-                static_cast<int>(height)};
-    const int width = static_cast<int>(height / 10);  // of a box that covers a tenth of the height squared
-    const int middle = seen.box.x + seen.box.width / 2;
-    for (int y = seen.box.y; y < seen.box.y + seen.box.height; ++y) {
+    const Box box = {static_cast<int>(least.x()), static_cast<int>(least.y()), static_cast<int>(most.x() - least.x()),
+                     static_cast<int>(most.y() - least.y())};
+    const int width = box.height / 10;  // of a body that covers a tenth of its height squared
+    const int middle = box.x + box.width / 2;
+    for (int y = box.y; y < box.y + box.height; ++y) {
       for (int x = middle - width / 2; x < middle - width / 2 + width; ++x) seen.mask.set(x, y);
     }
+    seen.mask.set(box.x, box.y), seen.mask.set(box.x + box.width - 1, box.y);  // hands
     return seen;
   }
 
@@ -53,12 +53,12 @@ class KeypointTermTest : public testing::Test {
   void add_keypoints(const std::vector<double>& pose, Observation& seen) const {
     const auto names = landmark_names(*body_);
     const auto positions = landmark_positions(*body_, pose);
-    const Box& box = seen.box;
-    seen.keypoints = {box.x + 0.5 * box.width, box.y + 0.5 * box.height, {}};
-    const Eigen::Matrix3d keypoints_from_world = world_from_keypoints(camera_, seen.keypoints).transpose();
+    const Box box = seen.box();
+    seen.keypoints_3d = {box.x + 0.5 * box.width, box.y + 0.5 * box.height, {}};
+    const Eigen::Matrix3d keypoints_from_world = world_from_keypoints(camera_, seen.keypoints_3d).transpose();
     for (size_t i = 0; i < names.size(); ++i) {
       const Eigen::Vector3d x = keypoints_from_world * (positions[i] - positions[0]);
-      seen.keypoints.points.push_back({names[i], {x.x(), x.y(), x.z()}});
+      seen.keypoints_3d.points.push_back({names[i], {x.x(), x.y(), x.z()}});
     }
   }
 
@@ -97,12 +97,12 @@ TEST_F(KeypointTermTest, FrontIsToldFromBackAndLeftFromRight) {
 TEST_F(KeypointTermTest, CountsOnlyWhatIsSeenAndTheBodyHas) {
   Observation seen = see(standing(0));
   const size_t all = KeypointTerm(*body_, camera_, seen).num_places();
-  EXPECT_EQ(all, seen.landmarks.size());
-  seen.landmarks[0].visibility = 0.2;
-  seen.landmarks[1].x = -3;
-  seen.landmarks[2].name = "tail";
+  EXPECT_EQ(all, seen.keypoints_2d.size());
+  seen.keypoints_2d[0].visibility = 0.2;
+  seen.keypoints_2d[1].x = -3;
+  seen.keypoints_2d[2].name = "tail";
   EXPECT_EQ(KeypointTerm(*body_, camera_, seen).num_places(), all - 3);
-  seen.landmarks.resize(8);
+  seen.keypoints_2d.resize(8);
   EXPECT_FALSE(KeypointTerm(*body_, camera_, seen).determines_pose());
 }
 
@@ -127,7 +127,7 @@ TEST_F(KeypointTermTest, DirectionsDoNotDependOnTheSizeOfTheBodyNorOnWhereItStan
   Observation seen = see(truth);
   add_keypoints(truth, seen);
   const KeypointTerm term(*body_, camera_, seen, {.places = 0});
-  for (Keypoint3D& point : seen.keypoints.points) {
+  for (Keypoint3D& point : seen.keypoints_3d.points) {
     for (double& x : point.x) x *= 1.3;
   }
   const KeypointTerm larger(*body_, camera_, seen, {.places = 0});
@@ -142,11 +142,11 @@ TEST_F(KeypointTermTest, AWildKeypointCostsLittleMoreThanABadOne) {
   Observation seen = see(truth);
   add_keypoints(truth, seen);
   const double good = KeypointTerm(*body_, camera_, seen).cost(body_->skeleton, truth);
-  for (Keypoint3D& point : seen.keypoints.points) {
+  for (Keypoint3D& point : seen.keypoints_3d.points) {
     if (point.name == "left_hand") point.x[2] += 0.3;
   }
   const double bad = KeypointTerm(*body_, camera_, seen).cost(body_->skeleton, truth);
-  for (Keypoint3D& point : seen.keypoints.points) {
+  for (Keypoint3D& point : seen.keypoints_3d.points) {
     if (point.name == "left_hand") point.x[2] += 30;
   }
   const double wild = KeypointTerm(*body_, camera_, seen).cost(body_->skeleton, truth);
@@ -166,8 +166,8 @@ TEST_F(KeypointTermTest, BothKindsOfEvidenceAddUp) {
   Observation with = see(truth);
   add_keypoints(truth, with);
   Observation without = with;
-  without.landmarks.clear();
-  without.keypoints = {};
+  without.keypoints_2d.clear();
+  without.keypoints_3d = {};
   const std::vector<Observation> seen = {with, without};
   const auto prepare = [&](EvidenceKind kind) { return likelihood.prepare(seen, Blur::k4, Blur::k4, kind); };
   const auto silhouettes = prepare(EvidenceKind::kSilhouette), keypoints = prepare(EvidenceKind::kKeypoints),

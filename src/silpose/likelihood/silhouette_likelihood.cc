@@ -21,6 +21,25 @@ int64_t sum_of(const ByteImage& covered) {
   return std::accumulate(covered.pixels().begin(), covered.pixels().end(), int64_t{0});
 }
 
+// Leaves out of the view what its observation ignores.
+void ignore(Evidence::View& view, const Mask& ignored) {
+  if (view.covered.empty()) {
+    view.ignored = resample_mask(ignored, view.window);
+    for (int y = 0; y < view.observed.height(); ++y) {
+      const auto row = view.observed.row(y);
+      const auto out = view.ignored.row(y);
+      for (size_t w = 0; w < row.size(); ++w) row[w] &= ~out[w];
+    }
+    return;
+  }
+  view.ignored_coverage = resample_coverage(ignored, view.window, kFullCoverage);
+  const auto covered = view.covered.pixels();
+  const auto out = view.ignored_coverage.pixels();
+  for (size_t i = 0; i < covered.size(); ++i) {
+    covered[i] = std::min(covered[i], static_cast<uint8_t>(kFullCoverage - out[i]));
+  }
+}
+
 // So that the samples of a whole picture fit into a raster.
 double largest_scale(const PinholeCamera& camera) {
   constexpr double kMostSamples = 1 << 29;
@@ -59,23 +78,27 @@ Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations
           "SilhouetteLikelihood: mask of {}x{} for camera '{}' of {}x{}", observation.mask.width(),
           observation.mask.height(), camera.name, camera.width, camera.height);
     Evidence::View view;
-    if (!observation.trust.nothing_found && !observation.box.empty()) {
+    const Box box = observation.box();
+    if (!observation.trust.nothing_found && !box.empty()) {
       if (options_.comparison == Comparison::kCropped) {
-        view.window = window_of(observation.mask.bounding_box(), options_.resolution, options_.resolution);
+        view.window = window_of(box, options_.resolution, options_.resolution);
       } else {
         // Never enlarged: there is nothing to see between the pixels of a small subject.
-        const double longer_side = std::max({observation.box.width, observation.box.height, 1});
+        const double longer_side = std::max({box.width, box.height, 1});
         double scale = std::min(1.0, options_.resolution / longer_side);
         if (options_.metric == Metric::kCoverage) scale = std::min(scale, largest_scale(camera));
         view.window = window_of_image(camera.width, camera.height, scale);
       }
       if (options_.metric == Metric::kCoverage) {
         view.covered = resample_coverage(observation.mask, view.window, kFullCoverage);
-        view.area = sum_of(view.covered);
       } else {
         view.observed = resample_mask(observation.mask, view.window);
-        view.area = view.observed.count();
       }
+      if (observation.ignored && options_.comparison == Comparison::kImage) {
+        check_sizes(observation);
+        ignore(view, *observation.ignored);
+      }
+      view.area = view.covered.empty() ? view.observed.count() : sum_of(view.covered);
       view.trust = view.area > 0 ? observation.trust.overall : 0;
       // Cropped silhouettes carry no information about the position, nor do image places of a pose that is elsewhere.
       if (view.trust > 0) {
@@ -114,6 +137,15 @@ void SilhouetteLikelihood::accumulate(const Evidence& evidence, const StateBatch
       renderer.counts_cropped(batch, view.observed, counts);
     } else {
       renderer.counts(batch, view.window, view.observed, counts);
+    }
+    if (view.ignored.width() > 0 || !view.ignored_coverage.empty()) {
+      std::vector<OutlineRenderer::Counts> unseen(num_states);
+      if (options_.metric == Metric::kCoverage) {
+        renderer.coverages(batch, view.window, view.ignored_coverage, unseen);
+      } else {
+        renderer.counts(batch, view.window, view.ignored, unseen);
+      }
+      for (size_t n = 0; n < num_states; ++n) counts[n].model -= unseen[n].both;
     }
     for (size_t n = 0; n < num_states; ++n) {
       out[n] += (weighted ? view.trust : 1.0) * area_distance(counts[n], view.area);

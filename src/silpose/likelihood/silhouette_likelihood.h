@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "silpose/filter/state_batch.h"
+#include "silpose/image/observation.h"
 #include "silpose/likelihood/keypoint_term.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/shape/observation.h"
 
 namespace silpose {
 
@@ -45,6 +45,8 @@ struct Evidence {
     Mask observed;                                  // raster; for Metric::kPixelCount
     ByteImage covered;                              // raster, 0 to kFullCoverage; for Metric::kCoverage
     int64_t area = 0;                               // set pixels, or the sum of what is covered
+    Mask ignored;                                   // raster pixels that do not count in `observed`; empty: none
+    ByteImage ignored_coverage;                     // the same for `covered`
     double trust = 0;                               // 0: this camera is ignored
     std::shared_ptr<const KeypointTerm> keypoints;  // null: none
   };
@@ -56,7 +58,8 @@ class SilhouetteLikelihood {
   // REQUIRES: at least one renderer, all of the same body.
   SilhouetteLikelihood(std::vector<std::shared_ptr<const BatchRenderer>> renderers, LikelihoodOptions options);
 
-  // Shapes: one observation per camera. A camera whose observation found nothing is ignored.
+  // Shapes: one observation per camera. A camera whose observation found nothing is ignored. Ignored pixels do not
+  // count where whole images are compared; cropped silhouettes have no common pixels to leave out.
   [[nodiscard]] Evidence prepare(std::span<const Observation> observations) const;
 
   // Distance in [0, 1] of each state, mean over the cameras that are used: what differs over the sum of both areas (0

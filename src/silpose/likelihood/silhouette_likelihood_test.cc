@@ -18,7 +18,6 @@ class SilhouetteLikelihoodTest : public ::testing::Test {
   Observation observe(std::span<const double> pose) const {
     Observation observation;
     observation.mask = render_silhouette(*body_, camera_, pose);
-    observation.box = observation.mask.bounding_box();
     return observation;
   }
   static StateBatch batch(const std::vector<std::vector<double>>& poses) {
@@ -35,6 +34,27 @@ class SilhouetteLikelihoodTest : public ::testing::Test {
   PinholeCamera camera_ = look_at_camera(320, 240, 300, {0, 1, 4}, {0, 0.75, 0});
   std::vector<double> pose_ = {0.1, 0.5, 0, 0, 0.2, 0.3, 0.1, -0.2};
 };
+
+// Half of the image says nothing: neither what is seen there, nor what a pose would show there, counts.
+TEST_F(SilhouetteLikelihoodTest, IgnoredPixelsDoNotCount) {
+  Observation observation = observe(pose_);
+  const Box box = observation.box();
+  Mask ignored(320, 240);
+  for (int y = 0; y < 240; ++y) {
+    for (int x = box.x + box.width / 2; x < 320; ++x) ignored.set(x, y), observation.mask.set(x, y, y % 2 == 0);
+  }
+  for (const Metric metric : {Metric::kPixelCount, Metric::kCoverage}) {
+    const auto likelihood = make({.metric = metric, .resolution = 320});
+    double clean = 0, fooled = 0, warned = 0;
+    likelihood.distances(likelihood.prepare(std::vector{observe(pose_)}), batch({pose_}), {&clean, 1});
+    likelihood.distances(likelihood.prepare(std::vector{observation}), batch({pose_}), {&fooled, 1});
+    Observation known = observation;
+    known.ignored = std::make_shared<const Mask>(ignored);
+    likelihood.distances(likelihood.prepare(std::vector{known}), batch({pose_}), {&warned, 1});
+    EXPECT_GT(fooled, 0.3);
+    EXPECT_NEAR(warned, clean, 0.01);
+  }
+}
 
 TEST_F(SilhouetteLikelihoodTest, TheTruePoseIsBestAndADisjointOneWorst) {
   const auto likelihood = make();
@@ -124,7 +144,7 @@ TEST_F(SilhouetteLikelihoodTest, ATenthOfAPixelMovesTheCoverage) {
   const Observation observation = observe(pose_);
   constexpr int kResolution = 24;
   const double metres_per_raster_pixel =
-      std::max(observation.box.width, observation.box.height) / double(kResolution) * 4 / camera_.fx;
+      std::max(observation.box().width, observation.box().height) / double(kResolution) * 4 / camera_.fx;
   std::vector<std::vector<double>> poses;
   for (int k = 0; k <= 10; ++k) {
     poses.push_back(pose_);

@@ -9,7 +9,7 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/filter/state_batch.h"
-#include "silpose/shape/observation.h"
+#include "silpose/image/observation.h"
 
 namespace silpose {
 

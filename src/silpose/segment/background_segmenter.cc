@@ -18,14 +18,17 @@ namespace {
 class BackgroundSegmenter : public BlobSegmenter {
  public:
   BackgroundSegmenter(BackgroundModel model, BackgroundSegmenterOptions options)
-      : options_(std::move(options)), finder_(std::move(model)), blob_(options_.clean_up) {
+      : BlobSegmenter(options.clean_up.garbage_mask),
+        options_(std::move(options)),
+        finder_(std::move(model)),
+        blob_(options_.clean_up) {
     blob_.grow_px = 0;  // last
     blob_.join_gap = std::min(blob_.join_gap, kGap);
   }
 
   void prepare(const ByteImage& image, int64_t index) override { prepared_.emplace(index, look_at(image, index)); }
 
-  Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
+  Result<Observation> segment(const ByteImage& image, int64_t index) override {
     const auto prepared = std::exchange(prepared_, std::nullopt);
     Result<Look> look = prepared && prepared->first == index ? prepared->second : look_at(image, index);
     if (!look) return look.failure();
@@ -76,7 +79,8 @@ class BackgroundSegmenter : public BlobSegmenter {
 
 class OnlineSegmenter : public BlobSegmenter {
  public:
-  OnlineSegmenter(OnlineMixture mixture, BackgroundSegmenterOptions options) : options_(std::move(options)) {
+  OnlineSegmenter(OnlineMixture mixture, BackgroundSegmenterOptions options)
+      : BlobSegmenter(options.clean_up.garbage_mask), options_(std::move(options)) {
     if (mixture == OnlineMixture::kMog2) {
       subtractor_ = cv::createBackgroundSubtractorMOG2(kHistory, 25, true);
     } else {
@@ -84,7 +88,7 @@ class OnlineSegmenter : public BlobSegmenter {
     }
   }
 
-  Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
+  Result<Observation> segment(const ByteImage& image, int64_t index) override {
     check(image.channels() == 3, "OnlineSegmenter: {} channels", image.channels());
     if (num_seen_ > 0 && (image.width() != size_.width || image.height() != size_.height)) {
       return error("frame {}: {}x{}, those before it {}x{}", index, image.width(), image.height(), size_.width,
@@ -99,11 +103,11 @@ class OnlineSegmenter : public BlobSegmenter {
     cv::medianBlur(labels, labels, 5);
     ByteImage bytes(image.width(), image.height());
     labels.copyTo(cv::Mat(size_, CV_8U, bytes.pixels().data()));
-    Segmentation result;
+    Observation result;
     if (num_seen_++ < kNumLearned) {
       result.mask = Mask(image.width(), image.height());
-      result.nothing_found = true;
-      result.trust = 0;
+      result.trust.nothing_found = true;
+      result.trust.overall = 0;
       return result;
     }
     return judge(subject_of(mask_from_image(bytes), options_.clean_up));

@@ -3,6 +3,8 @@
 // Threads: one thread per segmenter.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,7 +17,11 @@ namespace silpose {
 
 class BlobSegmenter : public Segmenter {
  public:
+  // `garbage_mask`: CleanUpOptions'.
+  explicit BlobSegmenter(const std::optional<Mask>& garbage_mask) : monitor_(removed_by(garbage_mask)) {}
+
   void expect(Mask silhouette) final { expected_ = std::move(silhouette); }
+  [[nodiscard]] std::shared_ptr<const Mask> ignored() const final { return monitor_.ignored(); }
   [[nodiscard]] std::string state() const final { return to_bytes(monitor_); }
   void restore(std::string_view state) final { check(from_bytes(state, monitor_), "BlobSegmenter: not a state of it"); }
 
@@ -24,7 +30,7 @@ class BlobSegmenter : public Segmenter {
   Mask subject_of(const Mask& foreground, const CleanUpOptions& clean_up) {
     return choose_blob(foreground, clean_up, std::exchange(expected_, {}));
   }
-  Segmentation judge(Mask mask, ByteImage confidence = {}) {
+  Observation judge(Mask mask, ByteImage confidence = {}) {
     return monitor_.judge(std::move(mask), std::move(confidence));
   }
 

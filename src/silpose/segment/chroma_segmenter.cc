@@ -15,7 +15,9 @@ constexpr double kMuchOutside = 0.01, kLittleScreen = 0.6;
 class ChromaSegmenter : public BlobSegmenter {
  public:
   ChromaSegmenter(ScreenModel model, const std::string& input, const CleanUpOptions& clean_up)
-      : model_(std::move(model)), clean_up_(clean_up) {
+      : BlobSegmenter(clean_up.garbage_mask ? clean_up.garbage_mask : model.inside),
+        model_(std::move(model)),
+        clean_up_(clean_up) {
     clean_up_.join_gap = std::min(clean_up_.join_gap, kGap);
     if (model_.filled < kLittleScreen) {
       warnings_.push_back(fmt::format("{}: only {:.0f} % of what should be the screen ever has its colour ({})", input,
@@ -32,7 +34,7 @@ class ChromaSegmenter : public BlobSegmenter {
     clean_up_.garbage_mask = model_.inside;
   }
 
-  Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
+  Result<Observation> segment(const ByteImage& image, int64_t index) override {
     if (image.width() != model_.width() || image.height() != model_.height()) {
       return error("frame {}: {}x{}, its screen {}x{}", index, image.width(), image.height(), model_.width(),
                    model_.height());

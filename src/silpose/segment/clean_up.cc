@@ -140,6 +140,15 @@ Mask grow(const Mask& mask, int radius_px) {
   return mask_from_mat(result);
 }
 
+std::shared_ptr<const Mask> removed_by(const std::optional<Mask>& garbage_mask) {
+  if (!garbage_mask) return {};
+  auto removed = std::make_shared<Mask>(garbage_mask->width(), garbage_mask->height());
+  for (int y = 0; y < removed->height(); ++y) {
+    for (int x = 0; x < removed->width(); ++x) removed->set(x, y, !garbage_mask->get(x, y));
+  }
+  return removed;
+}
+
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected) {
   options.check();
   check(expected.width() == 0 || (expected.width() == foreground.width() && expected.height() == foreground.height()),

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "silpose/image/mask.h"
@@ -31,6 +32,9 @@ struct CleanUpOptions {
 // another size.
 inline constexpr double kExpectedMargin = 0.08;
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected = {});
+
+// The pixels that a garbage mask removes, of which nothing is known; null without one.
+std::shared_ptr<const Mask> removed_by(const std::optional<Mask>& garbage_mask);
 
 // Fills holes (4-connected, not touching the border) of at most max_area pixels.
 Mask fill_holes(const Mask& mask, int64_t max_area);

@@ -14,7 +14,7 @@ constexpr double kLittleMoves = 0.002;  // of the picture
 class DepthSegmenter : public BlobSegmenter {
  public:
   DepthSegmenter(DepthFiles depth, const std::optional<DepthRange>& range, const CleanUpOptions& clean_up)
-      : depth_(std::move(depth)), range_(range), clean_up_(clean_up) {}
+      : BlobSegmenter(clean_up.garbage_mask), depth_(std::move(depth)), range_(range), clean_up_(clean_up) {}
 
   Result<void> learn(ProgressSink* progress) {
     // Of a range nothing is to be learned, but the first one has to fit.
@@ -33,7 +33,7 @@ class DepthSegmenter : public BlobSegmenter {
     return {};
   }
 
-  Result<Segmentation> segment(const ByteImage&, int64_t index) override {
+  Result<Observation> segment(const ByteImage&, int64_t index) override {
     const Result<DepthImage> depth = depth_.image_of(index);
     if (!depth) return depth.failure();
     const Mask before = range_ ? within_depth_range(*depth, *range_) : nearer_than_background(*depth, background_);

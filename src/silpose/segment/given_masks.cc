@@ -44,13 +44,14 @@ class GivenMasks : public Segmenter {
         masks_(std::move(masks)),
         offset_(offset),
         clean_up_(clean_up),
-        warnings_(std::move(warnings)) {
+        warnings_(std::move(warnings)),
+        monitor_(removed_by(clean_up.garbage_mask)) {
     is_cleaned_ = clean_up.region || clean_up.garbage_mask || clean_up.grow_px != 0 || clean_up.min_blob_px > 0;
     clean_up_.max_hole = clean_up_.join_gap = 0;  // holes and gaps of given masks are intended
     clean_up_.min_blob_px = std::max(clean_up_.min_blob_px, 0);
   }
 
-  Result<Segmentation> segment(const ByteImage& image, int64_t index) override {
+  Result<Observation> segment(const ByteImage& image, int64_t index) override {
     check(image.channels() == 3, "GivenMasks: {} channels", image.channels());
     if (!masks_) return judge(white_of(checked(image)));
     while (true) {
@@ -69,6 +70,7 @@ class GivenMasks : public Segmenter {
       return judge(white_of(checked(mask)));
     }
   }
+  [[nodiscard]] std::shared_ptr<const Mask> ignored() const override { return monitor_.ignored(); }
   [[nodiscard]] bool can_go_back() const override { return false; }  // masks are read in their order
   [[nodiscard]] std::string state() const override { return to_bytes(has_warned_, warnings_, monitor_); }
   void restore(std::string_view state) override {
@@ -88,7 +90,7 @@ class GivenMasks : public Segmenter {
     }
     return mask;
   }
-  Segmentation judge(const Mask& mask) { return monitor_.judge(is_cleaned_ ? choose_blob(mask, clean_up_) : mask); }
+  Observation judge(const Mask& mask) { return monitor_.judge(is_cleaned_ ? choose_blob(mask, clean_up_) : mask); }
 
   std::string name_;
   std::optional<Video> masks_;

@@ -35,7 +35,10 @@ bool is_settled(const PictureSquare& before, const PictureSquare& after) {
 class LearnedSegmenter : public Segmenter {
  public:
   LearnedSegmenter(PersonNetwork network, PersonDetector detector, const CleanUpOptions& clean_up)
-      : network_(std::move(network)), detector_(std::move(detector)), clean_up_(clean_up) {}
+      : network_(std::move(network)),
+        detector_(std::move(detector)),
+        clean_up_(clean_up),
+        monitor_(removed_by(clean_up.garbage_mask)) {}
 
   // A few dozen pictures show what is behind; the network is slow.
   void learn(const BackgroundSamples& samples) {
@@ -51,7 +54,7 @@ class LearnedSegmenter : public Segmenter {
     num_without_ = num_lost_ = 0;
   }
 
-  Result<Segmentation> segment(const ByteImage& image, int64_t /*index*/) override {
+  Result<Observation> segment(const ByteImage& image, int64_t /*index*/) override {
     Found found = find_mask(image);
     Mask mask = std::move(found.kept);
     if (plate_ && mask.count() > 0) {
@@ -60,9 +63,9 @@ class LearnedSegmenter : public Segmenter {
       mask = std::move(matte.mask);
     }
     forgive_edges(found.confidence, mask);
-    Segmentation judged = monitor_.judge(grow(mask, clean_up_.grow_px), std::move(found.confidence));
-    judged.landmarks = std::move(found.landmarks);
-    judged.keypoints = std::move(found.keypoints);
+    Observation judged = monitor_.judge(grow(mask, clean_up_.grow_px), std::move(found.confidence));
+    judged.keypoints_2d = std::move(found.keypoints_2d);
+    judged.keypoints_3d = std::move(found.keypoints_3d);
     return judged;
   }
 
@@ -84,15 +87,16 @@ class LearnedSegmenter : public Segmenter {
       warnings.emplace_back("several people are in the picture; the largest is followed (--region helps)");
     return warnings;
   }
-  [[nodiscard]] bool finds_landmarks() const override { return true; }
+  [[nodiscard]] std::shared_ptr<const Mask> ignored() const override { return monitor_.ignored(); }
+  [[nodiscard]] bool finds_keypoints() const override { return true; }
   [[nodiscard]] std::string name() const override { return "learned"; }
 
  private:
   struct Found {
     Mask kept;             // [H, W] the person, empty where there is none
     ByteImage confidence;  // [H, W]
-    std::vector<SeenLandmark> landmarks = {};
-    Keypoints3D keypoints = {};
+    std::vector<Keypoint2D> keypoints_2d = {};
+    Keypoints3D keypoints_3d = {};
   };
 
   // By the network alone; follows the person.
@@ -129,8 +133,8 @@ class LearnedSegmenter : public Segmenter {
     square_.reset();
     if (found.kept.count() > 0) {
       square_ = reading->next_square();
-      found.landmarks = reading->body_landmarks();
-      found.keypoints = reading->body_keypoints();
+      found.keypoints_2d = reading->body_keypoints_2d();
+      found.keypoints_3d = reading->body_keypoints_3d();
     }
     num_without_ = square_ ? 0 : num_without_ + 1;
     return found;

@@ -47,8 +47,8 @@ TEST(LearnedSegmenter, CutsOutARenderedPersonAndNobodyBefore) {
   const auto learned = segmenter();
   EXPECT_EQ(learned->name(), "learned");
   for (int frame = 0; frame < sequence().num_frames(); ++frame) {
-    const Segmentation found = learned->segment(scene.draw(frame), frame).value();
-    EXPECT_EQ(found.nothing_found, frame < 3) << frame;
+    const Observation found = learned->segment(scene.draw(frame), frame).value();
+    EXPECT_EQ(found.trust.nothing_found, frame < 3) << frame;
     if (frame < 3) continue;
     EXPECT_GT(intersection_over_union(found.mask, true_mask(sequence(), 0, frame)), 0.85) << frame;
   }
@@ -57,13 +57,13 @@ TEST(LearnedSegmenter, CutsOutARenderedPersonAndNobodyBefore) {
 
 TEST(LearnedSegmenter, FindsTheJointsWhereTheyAre) {
   const auto learned = segmenter();
-  EXPECT_TRUE(learned->finds_landmarks());
-  EXPECT_THAT(learned->segment(ColourScene(sequence(), 0).draw(0), 0).value().landmarks, IsEmpty());
-  const Segmentation found = learned->segment(ColourScene(sequence(), 0).draw(4), 4).value();
-  ASSERT_EQ(found.landmarks.size(), 14u);
+  EXPECT_TRUE(learned->finds_keypoints());
+  EXPECT_THAT(learned->segment(ColourScene(sequence(), 0).draw(0), 0).value().keypoints_2d, IsEmpty());
+  const Observation found = learned->segment(ColourScene(sequence(), 0).draw(4), 4).value();
+  ASSERT_EQ(found.keypoints_2d.size(), 14u);
   const auto names = landmark_names(*sequence().body);
   const auto positions = landmark_positions(*sequence().body, pose_of_frame(sequence(), 4));
-  for (const SeenLandmark& seen : found.landmarks) {
+  for (const Keypoint2D& seen : found.keypoints_2d) {
     const auto at = std::ranges::find(names, seen.name) - names.begin();
     ASSERT_LT(at, std::ssize(names)) << seen.name;
     const Eigen::Vector2d truth = sequence().cameras[0].project(positions[static_cast<size_t>(at)]).value();
@@ -165,8 +165,8 @@ double degrees_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 // In space, too: thighs, shins and the trunk point where the rendered body's do.
 TEST(LearnedSegmenter, SeesWhereLimbsPointInSpace) {
   const auto learned = segmenter();
-  EXPECT_TRUE(learned->segment(ColourScene(sequence(), 0).draw(0), 0).value().keypoints.empty());
-  const Keypoints3D found = learned->segment(ColourScene(sequence(), 0).draw(4), 4).value().keypoints;
+  EXPECT_TRUE(learned->segment(ColourScene(sequence(), 0).draw(0), 0).value().keypoints_3d.empty());
+  const Keypoints3D found = learned->segment(ColourScene(sequence(), 0).draw(4), 4).value().keypoints_3d;
   ASSERT_EQ(found.points.size(), 14u);
   const Directions seen = directions_of(found), truth = true_directions(sequence(), 4, found);
   for (const auto& limb : {std::pair{"left_thigh", "left_shin"},
@@ -185,7 +185,7 @@ TEST(LearnedSegmenter, SeesWhereLimbsPointInSpace) {
 TEST(LearnedSegmenter, TellsLeftFromRightAndNearFromFar) {
   for (const double heading_deg : {35.0, -35.0}) {
     const SyntheticSequence scene = reaching_person(heading_deg);
-    const Keypoints3D found = segmenter()->segment(ColourScene(scene, 0).draw(0), 0).value().keypoints;
+    const Keypoints3D found = segmenter()->segment(ColourScene(scene, 0).draw(0), 0).value().keypoints_3d;
     ASSERT_EQ(found.points.size(), 14u);
     const Directions seen = directions_of(found), truth = true_directions(scene, 0, found);
     for (const auto& line : {std::pair{"right_thigh", "left_thigh"},
@@ -207,7 +207,7 @@ TEST(LearnedSegmenter, TellsLeftFromRightAndNearFromFar) {
 TEST(LearnedSegmenter, DirectionsRollAndMirrorWithThePicture) {
   const SyntheticSequence scene = reaching_person(35);
   const auto see = [](const ByteImage& picture) {
-    return directions_of(segmenter()->segment(picture, 0).value().keypoints);
+    return directions_of(segmenter()->segment(picture, 0).value().keypoints_3d);
   };
   const ByteImage picture = ColourScene(scene, 0).draw(0);
   const Directions upright = see(picture), clockwise = see(rolled(picture)),
@@ -224,9 +224,9 @@ TEST(LearnedSegmenter, DirectionsRollAndMirrorWithThePicture) {
 TEST(LearnedSegmenter, SaysWhenThePersonWasLost) {
   const ColourScene scene(sequence(), 0);
   const auto learned = segmenter();
-  EXPECT_FALSE(learned->segment(scene.draw(4), 0).value().nothing_found);
-  EXPECT_TRUE(learned->segment(scene.draw(0), 1).value().nothing_found);
-  EXPECT_FALSE(learned->segment(scene.draw(4), 2).value().nothing_found);
+  EXPECT_FALSE(learned->segment(scene.draw(4), 0).value().trust.nothing_found);
+  EXPECT_TRUE(learned->segment(scene.draw(0), 1).value().trust.nothing_found);
+  EXPECT_FALSE(learned->segment(scene.draw(4), 2).value().trust.nothing_found);
   EXPECT_THAT(learned->warnings(), testing::ElementsAre(HasSubstr("lost 1 time")));
 }
 
@@ -235,8 +235,8 @@ TEST(LearnedSegmenter, GoesOnFromItsState) {
   const auto whole = segmenter(), second = segmenter();
   for (const int frame : {4, 0, 4, 5}) (void)whole->segment(scene.draw(frame), frame).value();
   second->restore(whole->state());
-  const Segmentation expected = whole->segment(scene.draw(6), 6).value();
-  const Segmentation found = second->segment(scene.draw(6), 6).value();
+  const Observation expected = whole->segment(scene.draw(6), 6).value();
+  const Observation found = second->segment(scene.draw(6), 6).value();
   EXPECT_EQ(found.mask, expected.mask);
   EXPECT_TRUE(std::ranges::equal(found.confidence.pixels(), expected.confidence.pixels()));
   EXPECT_EQ(second->warnings(), whole->warnings());
@@ -246,7 +246,7 @@ TEST(LearnedSegmenter, CountsOnlyWhoIsInTheRegion) {
   const ColourScene scene(sequence(), 0);
   CleanUpOptions clean_up;
   clean_up.region = Box{0, 0, 60, 360};
-  EXPECT_TRUE(segmenter(clean_up)->segment(scene.draw(4), 0).value().nothing_found);
+  EXPECT_TRUE(segmenter(clean_up)->segment(scene.draw(4), 0).value().trust.nothing_found);
 }
 
 TEST(LearnedSegmenter, IsChosenWhereNothingElseIsAskedFor) {

@@ -68,13 +68,13 @@ PictureSquare PersonReading::next_square() const {
   return square_around(middle.x, middle.y, above.x, above.y);
 }
 
-std::vector<SeenLandmark> PersonReading::body_landmarks() const {
-  std::vector<SeenLandmark> seen;
+std::vector<Keypoint2D> PersonReading::body_keypoints_2d() const {
+  std::vector<Keypoint2D> seen;
   for (const auto& [name, i] : kOfBody) seen.push_back({name, landmarks[i].x, landmarks[i].y, landmarks[i].visibility});
   return seen;
 }
 
-Keypoints3D PersonReading::body_keypoints() const {
+Keypoints3D PersonReading::body_keypoints_3d() const {
   Keypoints3D keypoints{square.x, square.y, {}};
   for (const auto& [name, i] : kOfBody) {
     keypoints.points.push_back({name, landmarks[i].in_space, landmarks[i].visibility});

@@ -11,9 +11,9 @@
 
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
+#include "silpose/image/keypoint2d.h"
 #include "silpose/image/keypoints3d.h"
 #include "silpose/image/mask.h"
-#include "silpose/image/seen_landmark.h"
 #include "silpose/segment/picture_square.h"
 #include "silpose/segment/tflite_network.h"
 
@@ -38,8 +38,8 @@ struct PersonReading {
   // Where to look for the same person again.
   [[nodiscard]] PictureSquare next_square() const;
   // Those that are joints, or end points, of the human, under its names.
-  [[nodiscard]] std::vector<SeenLandmark> body_landmarks() const;
-  [[nodiscard]] Keypoints3D body_keypoints() const;
+  [[nodiscard]] std::vector<Keypoint2D> body_keypoints_2d() const;
+  [[nodiscard]] Keypoints3D body_keypoints_3d() const;
   // [height, width]; far below 0 outside of the square.
   [[nodiscard]] Image<float> logits_in_picture(int width, int height) const;
 };

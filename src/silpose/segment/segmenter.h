@@ -14,25 +14,13 @@
 #include "silpose/base/progress.h"
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
-#include "silpose/image/keypoints3d.h"
 #include "silpose/image/mask.h"
-#include "silpose/image/seen_landmark.h"
+#include "silpose/image/observation.h"
 #include "silpose/segment/clean_up.h"
 #include "silpose/segment/depth_model.h"
 #include "silpose/segment/screen_model.h"
 
 namespace silpose {
-
-struct Segmentation {
-  Mask mask;                                 // [H, W] the chosen blob
-  ByteImage confidence = {};                 // [H, W] of each pixel, 255: certain; empty: certain everywhere
-  std::vector<SeenLandmark> landmarks = {};  // where the segmenter finds any
-  Keypoints3D keypoints = {};                // the same in space
-  double trust = 1;                          // 0: unusable; 1: as good as a given mask
-  bool nothing_found = false;                // no blob counts
-  bool touches_border = false;               // part of the subject may be outside the picture
-  bool area_jumped = false;                  // the area is far from the recent median
-};
 
 class Segmenter {
  public:
@@ -40,7 +28,7 @@ class Segmenter {
 
   // The mask of picture number `index` of the video, [H, W, 3] B, G, R. Indices rise from call to call and may skip.
   // Errors: the picture has another size than those learned from; given masks that end, break or have another size.
-  virtual Result<Segmentation> segment(const ByteImage& image, int64_t index) = 0;
+  virtual Result<Observation> segment(const ByteImage& image, int64_t index) = 0;
 
   // Does the part of segment() that does not need the expected silhouette; segment() of that picture then takes less
   // time and gives the same result. While it runs only expect() may be called.
@@ -50,8 +38,11 @@ class Segmenter {
   // (choose_blob()) and never becomes foreground by itself. A network needs no such help.
   virtual void expect(Mask /*silhouette*/) {}  // NOLINT(performance-unnecessary-value-param): others keep it
 
-  // Whether its masks come with landmarks.
-  [[nodiscard]] virtual bool finds_landmarks() const { return false; }
+  // Whether its observations have keypoints.
+  [[nodiscard]] virtual bool finds_keypoints() const { return false; }
+
+  // Pixels of which none of its observations knows anything; null: none.
+  [[nodiscard]] virtual std::shared_ptr<const Mask> ignored() const { return {}; }
 
   // Pictures before this one serve to learn from and are not to be tracked.
   [[nodiscard]] virtual int64_t first_index() const { return 0; }

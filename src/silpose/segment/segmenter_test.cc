@@ -50,9 +50,9 @@ class SegmenterTest : public testing::Test {
   // From frame `first` on.
   void expect_finds_subject(Segmenter& segmenter, int first) const {
     for (int i = first; i < kFrames; ++i) {
-      const Segmentation result = segmenter.segment(picture(i), i).value();
+      const Observation result = segmenter.segment(picture(i), i).value();
       if (truth(i).count() == 0) {
-        EXPECT_TRUE(result.nothing_found) << i;
+        EXPECT_TRUE(result.trust.nothing_found) << i;
       } else if (truth(i).count() == 24 * 60) {
         EXPECT_GT(intersection_over_union(result.mask, truth(i)), 0.93) << i;
       }
@@ -87,12 +87,12 @@ TEST_F(SegmenterTest, GoesOnFromItsState) {
     for (int i = 0; i < kFrames; ++i) {
       if (i == 30) second->restore(whole->state());
       const ByteImage shown = i == 35 ? picture(0) : picture(i);  // lost for once: the area jumps
-      const Segmentation expected = whole->segment(shown, i).value();
+      const Observation expected = whole->segment(shown, i).value();
       if (i < 30 && !second->sees_all()) continue;
-      const Segmentation found = second->segment(shown, i).value();
+      const Observation found = second->segment(shown, i).value();
       EXPECT_EQ(found.mask, expected.mask) << whole->name() << " " << i;
       EXPECT_TRUE(std::ranges::equal(found.confidence.pixels(), expected.confidence.pixels())) << i;
-      EXPECT_EQ(found.trust, expected.trust) << whole->name() << " " << i;
+      EXPECT_EQ(found.trust.overall, expected.trust.overall) << whole->name() << " " << i;
     }
     EXPECT_THROW(second->restore("x"), std::invalid_argument);
   }
@@ -120,9 +120,9 @@ TEST_F(SegmenterTest, OnlineMixturesLearnFromTheEmptyStart) {
     EXPECT_EQ(segmenter->name(), std::string("background ") + background);
     double worst = 1;
     for (int i = 0; i < kFrames; ++i) {
-      const Segmentation result = segmenter->segment(picture(i), i).value();
+      const Observation result = segmenter->segment(picture(i), i).value();
       if (i < 10) {
-        EXPECT_EQ(result.trust, 0);
+        EXPECT_EQ(result.trust.overall, 0);
       } else if (truth(i).count() == 24 * 60) {
         worst = std::min(worst, intersection_over_union(result.mask, truth(i)));
       }
@@ -257,9 +257,9 @@ TEST_F(SegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   EXPECT_THAT(segmenter->name(), HasSubstr("chroma #"));
   EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("8 % of the picture lies outside the screen")));
   for (const int i : {0, 20, 30}) {
-    const Segmentation result = segmenter->segment(keyed(i), i).value();
+    const Observation result = segmenter->segment(keyed(i), i).value();
     EXPECT_GT(intersection_over_union(result.mask, truth(i)), 0.97) << i;
-    EXPECT_EQ(result.nothing_found, truth(i).count() == 0) << i;
+    EXPECT_EQ(result.trust.nothing_found, truth(i).count() == 0) << i;
   }
   // With a garbage mask it is the user who says what to leave out.
   options.clean_up.garbage_mask = Mask(160, 120);
@@ -268,7 +268,12 @@ TEST_F(SegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   }
   segmenter = make_segmenter(at("green"), options).value();
   EXPECT_THAT(segmenter->warnings(), IsEmpty());
-  EXPECT_EQ(segmenter->segment(keyed(45), 45).value().mask.bounding_box(), (Box{0, 0, 12, 120}));
+  const Observation cut = segmenter->segment(keyed(45), 45).value();
+  EXPECT_EQ(cut.box(), (Box{0, 0, 12, 120}));
+  ASSERT_NE(cut.ignored, nullptr);
+  EXPECT_EQ(cut.ignored, segmenter->ignored());
+  EXPECT_EQ(cut.ignored->bounding_box(), (Box{100, 0, 60, 120}));
+  EXPECT_EQ(cut.ignored->count(), 60 * 120);
   EXPECT_THAT(failure({.kind = "chroma"}), HasSubstr("clip: no screen"));
 }
 

@@ -15,28 +15,30 @@ constexpr double kTrustAtBorder = 0.5, kTrustAfterJump = 0.25;
 
 }  // namespace
 
-Segmentation TrustMonitor::judge(Mask mask, ByteImage confidence) {
-  Segmentation result;
+Observation TrustMonitor::judge(Mask mask, ByteImage confidence) {
+  Observation result;
+  Trust& trust = result.trust;
   const int64_t area = mask.count();
   const Box box = mask.bounding_box();
-  result.nothing_found = area == 0;
-  result.touches_border = area > 0 && (box.x == 0 || box.y == 0 || box.x + box.width == mask.width() ||
-                                       box.y + box.height == mask.height());
+  trust.nothing_found = area == 0;
+  trust.touches_border = area > 0 && (box.x == 0 || box.y == 0 || box.x + box.width == mask.width() ||
+                                      box.y + box.height == mask.height());
   if (area > 0) {
     if (recent_areas_.size() >= kLeast) {
       const auto usual =
           static_cast<double>(upper_median(std::vector<int64_t>(recent_areas_.begin(), recent_areas_.end())));
       const double ratio = static_cast<double>(area) / usual;
-      result.area_jumped = ratio > kMaxGrowth || ratio < 1 / kMaxGrowth;
+      trust.area_jumped = ratio > kMaxGrowth || ratio < 1 / kMaxGrowth;
     }
     recent_areas_.push_back(area);
     if (recent_areas_.size() > kWindow) recent_areas_.pop_front();
   }
-  result.trust = result.nothing_found ? 0 : 1;
-  if (result.touches_border) result.trust *= kTrustAtBorder;
-  if (result.area_jumped) result.trust *= kTrustAfterJump;
+  trust.overall = trust.nothing_found ? 0 : 1;
+  if (trust.touches_border) trust.overall *= kTrustAtBorder;
+  if (trust.area_jumped) trust.overall *= kTrustAfterJump;
   result.mask = std::move(mask);
   result.confidence = std::move(confidence);
+  result.ignored = ignored_;
   return result;
 }
 

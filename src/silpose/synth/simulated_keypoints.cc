@@ -68,9 +68,9 @@ SimulatedKeypoints::Seen SimulatedKeypoints::draw(int frame, const Box& box) con
   std::map<std::string, Vector3d> x;
   for (size_t i = 0; i < positions.size(); ++i) x[landmark_names_[i]] = positions[i];
 
-  seen.keypoints.centre_x = box.x + 0.5 * box.width;
-  seen.keypoints.centre_y = box.y + 0.5 * box.height;
-  const Eigen::Matrix3d points_from_world = world_from_keypoints(camera, seen.keypoints).transpose();
+  seen.keypoints_3d.centre_x = box.x + 0.5 * box.width;
+  seen.keypoints_3d.centre_y = box.y + 0.5 * box.height;
+  const Eigen::Matrix3d points_from_world = world_from_keypoints(camera, seen.keypoints_3d).transpose();
   Rng rng(seed_, static_cast<uint64_t>(frame), static_cast<uint64_t>(camera_idx_));
   const double of_bias = std::sqrt(kShareOfBias), of_frame = std::sqrt(1 - kShareOfBias);
   // The vector as the network sees it.
@@ -107,11 +107,11 @@ SimulatedKeypoints::Seen SimulatedKeypoints::draw(int frame, const Box& box) con
   const double place_deviation = kPlaceDeviation * camera.fy * sequence_->body->height_m / std::max(depth, 0.1);
   for (const std::string& name : keypoint_names()) {
     const Vector3d& place = drawn.at(name);
-    seen.keypoints.points.push_back({.name = name, .x = {place.x(), place.y(), place.z()}});
+    seen.keypoints_3d.points.push_back({.name = name, .x = {place.x(), place.y(), place.z()}});
     const Eigen::Vector2d off = of_bias * place_bias_.at(name) + of_frame * Eigen::Vector2d(normal3(rng).head<2>());
     if (const auto pixel = camera.project(x.at(name))) {
       const Eigen::Vector2d at = *pixel + place_deviation * off;
-      seen.landmarks.push_back({.name = name, .x = at.x(), .y = at.y()});
+      seen.keypoints_2d.push_back({.name = name, .x = at.x(), .y = at.y()});
     }
   }
   return seen;

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "silpose/image/keypoint2d.h"
 #include "silpose/image/keypoints3d.h"
 #include "silpose/image/mask.h"
-#include "silpose/image/seen_landmark.h"
 #include "silpose/synth/scene.h"
 
 namespace silpose {
@@ -24,8 +24,8 @@ class SimulatedKeypoints {
   SimulatedKeypoints(const SyntheticSequence& sequence, int camera_idx, uint64_t seed);
 
   struct Seen {
-    std::vector<SeenLandmark> landmarks;
-    Keypoints3D keypoints;
+    std::vector<Keypoint2D> keypoints_2d;
+    Keypoints3D keypoints_3d;
   };
   // Of frame `frame`, counted from the video's first image; the network looks at the middle of `box`. Nothing in the
   // lead-in.

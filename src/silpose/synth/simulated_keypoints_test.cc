@@ -36,7 +36,7 @@ TEST(SimulatedKeypoints, DirectionsAreOffAsFarAsSaid) {
     const SimulatedKeypoints network(sequence, 0, static_cast<uint64_t>(seed));
     double mean = 0;
     for (int frame = 0; frame < kFrames; ++frame) {
-      const Keypoints3D seen = network.draw(frame, box).keypoints;
+      const Keypoints3D seen = network.draw(frame, box).keypoints_3d;
       const double off = (direction(sequence, seen, "left_thigh", "left_shin") - true_thigh).dot(ray);
       in_depth += off * off / (kSeeds * kFrames);
       mean += off / kFrames;
@@ -53,9 +53,9 @@ TEST(SimulatedKeypoints, PlacesAreNearTheJoints) {
   const auto names = landmark_names(*sequence.body);
   const auto positions = landmark_positions(*sequence.body, sequence.poses[0]);
   const SimulatedKeypoints::Seen seen = network.draw(0, true_mask(sequence, 0, 0).bounding_box());
-  EXPECT_EQ(seen.landmarks.size(), 12U);
-  EXPECT_EQ(seen.keypoints.points.size(), 12U);
-  for (const SeenLandmark& landmark : seen.landmarks) {
+  EXPECT_EQ(seen.keypoints_2d.size(), 12U);
+  EXPECT_EQ(seen.keypoints_3d.points.size(), 12U);
+  for (const Keypoint2D& landmark : seen.keypoints_2d) {
     const auto i = static_cast<size_t>(std::ranges::find(names, landmark.name) - names.begin());
     const Eigen::Vector2d pixel = sequence.cameras[0].project(positions[i]).value();
     EXPECT_LT((pixel - Eigen::Vector2d(landmark.x, landmark.y)).norm(), 20) << landmark.name;
@@ -67,8 +67,8 @@ TEST(SimulatedKeypoints, AFrameIsTheSameInAnyOrderAndOthersDiffer) {
   const SyntheticSequence sequence = human_that_stands(3, 1);
   const SimulatedKeypoints network(sequence, 0, 7), again(sequence, 0, 7), other(sequence, 0, 8);
   const Box box{100, 100, 50, 200};
-  EXPECT_TRUE(network.draw(0, box).keypoints.empty()) << "nobody is there yet";
-  const auto x = [&](const SimulatedKeypoints& of, int frame) { return of.draw(frame, box).keypoints.points[3].x; };
+  EXPECT_TRUE(network.draw(0, box).keypoints_3d.empty()) << "nobody is there yet";
+  const auto x = [&](const SimulatedKeypoints& of, int frame) { return of.draw(frame, box).keypoints_3d.points[3].x; };
   const auto third = x(network, 3);
   EXPECT_EQ(x(again, 3), third);
   EXPECT_NE(x(network, 2), third);

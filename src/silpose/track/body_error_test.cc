@@ -20,7 +20,6 @@ class BodyErrorTest : public ::testing::Test {
     for (const PinholeCamera& camera : cameras) {
       Observation observation;
       observation.mask = render_silhouette(*body_, camera, pose_);
-      observation.box = observation.mask.bounding_box();
       observations.push_back(std::move(observation));
     }
     CoverageEvidence evidence = error.likelihood().prepare(observations, Blur::k4, Blur::k4);

@@ -17,7 +17,6 @@
 #include "silpose/track/girth_fit.h"
 #include "silpose/track/judged_clip.h"
 #include "silpose/track/keypoint_sides.h"
-#include "silpose/track/observe.h"
 #include "silpose/track/plausibility.h"
 #include "silpose/track/pose_fit.h"
 
@@ -239,7 +238,7 @@ std::vector<size_t> informative_instants(const JudgedClip& clip, std::span<const
   const auto is_informative = [&](size_t t) {
     const std::vector<Observation>& seen = clip[t].observations;
     if (num_cameras > 1) return std::ranges::count_if(seen, is_usable) >= 2;
-    return evidence == EvidenceKind::kBoth && is_usable(seen.front()) && line_across(seen.front().keypoints);
+    return evidence == EvidenceKind::kBoth && is_usable(seen.front()) && line_across(seen.front().keypoints_3d);
   };
   std::vector<size_t> instants;
   for (size_t t = 0; t < clip.size(); ++t) {

@@ -26,7 +26,6 @@ class BodyFitTest : public ::testing::Test {
       for (const PinholeCamera& camera : cameras_) {
         Observation observation;
         observation.mask = render_silhouette(subject_, camera, pose);
-        observation.box = observation.mask.bounding_box();
         instant.observations.push_back(std::move(observation));
       }
       clip_.push_back(std::move(instant));
@@ -91,7 +90,6 @@ TEST_F(BodyFitTest, FindsHowThickTheSubjectIs) {
     for (size_t c = 0; c < 2; ++c) {
       Observation& observation = clip_[static_cast<size_t>(t)].observations[c];
       observation.mask = render_silhouette(thicker, cameras_[c], pose_at(t));
-      observation.box = observation.mask.bounding_box();
     }
   }
   const BodyFit fit = fit_body(options(), clip_, poses_).value();
@@ -168,10 +166,9 @@ class OneCameraFitTest : public ::testing::Test {
     for (int t = 0; t < sequence_.num_frames(); ++t) {
       Observation seen;
       seen.mask = true_mask(sequence_, 0, t);
-      seen.box = seen.mask.bounding_box();
-      SimulatedKeypoints::Seen drawn = network.draw(t, seen.box);
-      seen.landmarks = std::move(drawn.landmarks);
-      seen.keypoints = std::move(drawn.keypoints);
+      SimulatedKeypoints::Seen drawn = network.draw(t, seen.box());
+      seen.keypoints_2d = std::move(drawn.keypoints_2d);
+      seen.keypoints_3d = std::move(drawn.keypoints_3d);
       clip_.push_back({t, t * int64_t{33'333'333}, {std::move(seen)}});
     }
   }
@@ -216,13 +213,13 @@ TEST_F(OneCameraFitTest, KeypointsTellBonesAndTheStatureStays) {
 
 TEST_F(OneCameraFitTest, TellsNothingWithoutKeypointsThatCount) {
   EXPECT_FALSE(fit(options(EvidenceKind::kSilhouette)).has_value());
-  for (ClipInstant& instant : clip_) instant.observations[0].keypoints = {};
+  for (ClipInstant& instant : clip_) instant.observations[0].keypoints_3d = {};
   EXPECT_FALSE(fit(options()).has_value());
 }
 
 TEST_F(OneCameraFitTest, LeavesOutKeypointsWhoseSidesAreExchanged) {
   const auto [leg, trunk] = leg_and_trunk(fit(options()).value());
-  Keypoints3D& one = clip_[3].observations[0].keypoints;
+  Keypoints3D& one = clip_[3].observations[0].keypoints_3d;
   for (Keypoint3D& point : one.points) {
     point.x[2] = -point.x[2];
     point.name = point.name.starts_with("left_") ? "right_" + point.name.substr(5) : "left_" + point.name.substr(6);

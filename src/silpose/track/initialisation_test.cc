@@ -17,7 +17,6 @@ class InitialisationTest : public ::testing::Test {
   Observation see(const std::vector<double>& pose) const {
     Observation observation;
     observation.mask = render_silhouette(*body_, camera_, pose);
-    observation.box = observation.mask.bounding_box();
     return observation;
   }
   std::vector<StartingPose> start(const std::vector<double>& truth, const StateBatch& candidates) const {

@@ -20,15 +20,15 @@ JudgedClip::JudgedClip(std::span<const ClipInstant> clip, size_t num_cameras) : 
   for (size_t c = 0; c < num_cameras; ++c) {
     std::vector<const Keypoints3D*> keypoints;
     keypoints.reserve(clip.size());
-    for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints);
+    for (const ClipInstant& instant : clip) keypoints.push_back(&instant.observations[c].keypoints_3d);
     const std::vector<double> exchanged = exchanged_sides(keypoints, times);
     for (size_t t = 0; t < clip.size(); ++t) {
       exchanged_[t] = std::max(exchanged_[t], exchanged[t]);
       if (exchanged[t] <= kExchanged) continue;
       ClipInstant& changed = changed_.try_emplace(t, clip[t]).first->second;
       instants_[t] = &changed;
-      changed.observations[c].keypoints = {};
-      changed.observations[c].landmarks.clear();
+      changed.observations[c].keypoints_3d = {};
+      changed.observations[c].keypoints_2d.clear();
     }
   }
 }

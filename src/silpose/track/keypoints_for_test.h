@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "silpose/body/test_body.h"
+#include "silpose/image/observation.h"
 #include "silpose/shape/keypoint_axes.h"
-#include "silpose/shape/observation.h"
 
 namespace silpose {
 
@@ -31,13 +31,15 @@ inline BodyModel make_sided_body() {
 }
 
 // The keypoints of a pose, in the image and in space. Where the sides are `exchanged` the network takes left for right
-// and sees the body mirrored in depth. REQUIRES: the observation has its box; the whole body is in front of the camera.
+// and sees the body mirrored in depth. REQUIRES: the observation has its mask; the whole body is in front of the
+// camera.
 inline void add_keypoints(const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose,
                           Observation& seen, bool exchanged = false) {
   const auto names = landmark_names(body);
   const auto positions = landmark_positions(body, pose);
-  seen.keypoints = {seen.box.x + 0.5 * seen.box.width, seen.box.y + 0.5 * seen.box.height, {}};
-  const Eigen::Matrix3d keypoints_from_world = world_from_keypoints(camera, seen.keypoints).transpose();
+  const Box box = seen.box();
+  seen.keypoints_3d = {box.x + 0.5 * box.width, box.y + 0.5 * box.height, {}};
+  const Eigen::Matrix3d keypoints_from_world = world_from_keypoints(camera, seen.keypoints_3d).transpose();
   for (size_t i = 0; i < names.size(); ++i) {
     std::string name = names[i];
     if (exchanged && name.starts_with("left_")) {
@@ -47,8 +49,8 @@ inline void add_keypoints(const BodyModel& body, const PinholeCamera& camera, st
     }
     const Eigen::Vector2d pixel = camera.project(positions[i]).value();
     const Eigen::Vector3d x = keypoints_from_world * (positions[i] - positions[0]);
-    seen.landmarks.push_back({name, pixel.x(), pixel.y()});
-    seen.keypoints.points.push_back({name, {x.x(), x.y(), exchanged ? -x.z() : x.z()}});
+    seen.keypoints_2d.push_back({name, pixel.x(), pixel.y()});
+    seen.keypoints_3d.points.push_back({name, {x.x(), x.y(), exchanged ? -x.z() : x.z()}});
   }
 }
 

@@ -83,10 +83,10 @@ LandmarkProposal::LandmarkProposal(std::shared_ptr<const BodyModel> body, const 
 StateBatch LandmarkProposal::propose(const Observation& observation, int num_candidates, Rng& rng) const {
   check(num_candidates >= 0, "LandmarkProposal: {} candidates", num_candidates);
   const KeypointTerm term(*body_, camera_, observation, {.places = 1});
-  if (!term.determines_pose() || observation.box.empty()) return common_.propose(observation, num_candidates, rng);
+  const Box box = observation.box();
+  if (!term.determines_pose() || box.empty()) return common_.propose(observation, num_candidates, rng);
 
   // At the distance at which the body covers as much as the mask, in the middle of its box.
-  const Box& box = observation.box;
   const double depth =
       body_->height_m * camera_.fy / std::sqrt(kSquarePerArea * static_cast<double>(observation.mask.count()));
   const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);

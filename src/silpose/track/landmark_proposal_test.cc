@@ -33,17 +33,17 @@ class LandmarkProposalTest : public testing::Test {
     for (size_t i = 0; i < names.size(); ++i) {
       const Eigen::Vector2d pixel =
           camera_.project(positions[i]).value() + noise_px * Eigen::Vector2d(rng.normal(), rng.normal());
-      seen.landmarks.push_back({names[i], pixel.x(), pixel.y()});
+      seen.keypoints_2d.push_back({names[i], pixel.x(), pixel.y()});
       least = least.cwiseMin(pixel), most = most.cwiseMax(pixel);
     }
-    const double height = most.y() - least.y();
-    seen.box = {static_cast<int>(least.x()), static_cast<int>(least.y()), static_cast<int>(most.x() - least.x()),
-                static_cast<int>(height)};
-    const int width = static_cast<int>(height / 10);  // of a box that covers a tenth of the height squared
-    const int middle = seen.box.x + seen.box.width / 2;
-    for (int y = seen.box.y; y < seen.box.y + seen.box.height; ++y) {
+    const Box box = {static_cast<int>(least.x()), static_cast<int>(least.y()), static_cast<int>(most.x() - least.x()),
+                     static_cast<int>(most.y() - least.y())};
+    const int width = box.height / 10;  // of a body that covers a tenth of its height squared
+    const int middle = box.x + box.width / 2;
+    for (int y = box.y; y < box.y + box.height; ++y) {
       for (int x = middle - width / 2; x < middle - width / 2 + width; ++x) seen.mask.set(x, y);
     }
+    seen.mask.set(box.x, box.y), seen.mask.set(box.x + box.width - 1, box.y);  // hands
     return seen;
   }
 
@@ -71,7 +71,7 @@ TEST_F(LandmarkProposalTest, ProposesThePoseThatIsSeen) {
 
 TEST_F(LandmarkProposalTest, WithoutLandmarksTheCommonPosesAreProposed) {
   Observation seen = see(standing(0));
-  seen.landmarks.clear();
+  seen.keypoints_2d.clear();
   Rng rng(1, 0, 0);
   const StateBatch poses = LandmarkProposal(body_, camera_).propose(seen, 0, rng);
   EXPECT_EQ(poses, CommonPoses(body_->skeleton).poses());

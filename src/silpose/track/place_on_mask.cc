@@ -43,8 +43,9 @@ Eigen::Vector2d image_from_raster(const Window& window, const Eigen::Vector2d& x
 
 StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
                          const StateBatch& candidates) {
-  check(!observation.box.empty(), "place_on_mask: nothing was found");
-  const double longer_side = std::max(observation.box.width, observation.box.height);
+  const Box box = observation.box();
+  check(!box.empty(), "place_on_mask: nothing was found");
+  const double longer_side = std::max(box.width, box.height);
   const Window window = window_of_image(camera.width, camera.height, std::min(1.0, kPlacingResolution / longer_side));
   const Blob observed = measure(resample_mask(observation.mask, window));
   if (observed.area < 1) return candidates;

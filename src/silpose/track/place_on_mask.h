@@ -5,7 +5,7 @@
 #include "silpose/body/body_model.h"
 #include "silpose/filter/state_batch.h"
 #include "silpose/geometry/camera.h"
-#include "silpose/shape/observation.h"
+#include "silpose/image/observation.h"
 
 namespace silpose {
 

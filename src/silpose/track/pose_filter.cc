@@ -92,7 +92,7 @@ class Recognition {
   [[nodiscard]] StateBatch poses(std::span<const Observation> observations) const {
     constexpr int kCandidates = 4;
     for (size_t c = 0; c < proposals_.size(); ++c) {
-      if (observations[c].box.empty() || observations[c].keypoints.empty()) continue;
+      if (observations[c].box().empty() || observations[c].keypoints_3d.empty()) continue;
       if (!make_keypoint_term(*body_, cameras_[c], observations[c], EvidenceKind::kKeypoints)) continue;
       Rng unused(0, 0);
       return proposals_[c].propose(observations[c], kCandidates, unused);

@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "silpose/filter/particle_set.h"
+#include "silpose/image/observation.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/shape/observation.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/step_report.h"
 #include "silpose/track/tracker_options.h"

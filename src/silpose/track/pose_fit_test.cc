@@ -18,7 +18,6 @@ class PoseFitTest : public ::testing::Test {
   CoverageEvidence see(const std::vector<double>& pose) const {
     Observation observation;
     observation.mask = render_silhouette(*body_, camera_, pose);
-    observation.box = observation.mask.bounding_box();
     return likelihood_.prepare({&observation, 1});
   }
   static Eigen::VectorXd vector_of(const std::vector<double>& pose) {

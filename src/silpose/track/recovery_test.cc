@@ -47,7 +47,6 @@ class RecoveryTest : public ::testing::Test {
     for (int t = 0; t < 20; ++t) {
       Observation observation;
       observation.mask = render_silhouette(*body_, camera_, truth(t));
-      observation.box = observation.mask.bounding_box();
       const double now = off(tracker.step({&observation, 1}, t, t * int64_t{33'333'333}).pose, t);
       if (t >= 10) metres.push_back(now);
     }
@@ -88,7 +87,6 @@ TEST_F(RecoveryTest, FacesWhereLandmarksSaySoAndStaysSoWhereTheyAreWrongForAMome
     dof(pose, "root_ry") = 2.9;
     Observation observation;
     observation.mask = render_silhouette(*body_, camera_, pose);
-    observation.box = observation.mask.bounding_box();
     const auto positions = landmark_positions(*body_, pose);
     for (size_t i = 0; i < names.size(); ++i) {
       std::string name = names[i];
@@ -97,7 +95,7 @@ TEST_F(RecoveryTest, FacesWhereLandmarksSaySoAndStaysSoWhereTheyAreWrongForAMome
       else if (t > 0 && name.starts_with("right_"))
         name = "left_" + name.substr(6);
       const Eigen::Vector2d pixel = camera_.project(positions[i]).value();
-      observation.landmarks.push_back({name, pixel.x(), pixel.y()});
+      observation.keypoints_2d.push_back({name, pixel.x(), pixel.y()});
     }
     std::vector<double> found = tracker.step({&observation, 1}, t, t * int64_t{33'333'333}).pose;
     EXPECT_GT(std::cos(dof(found, "root_ry") - 2.9), 0.7) << t;

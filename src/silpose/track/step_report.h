@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "silpose/image/mask.h"
-#include "silpose/shape/observation.h"
+#include "silpose/image/observation.h"
 
 namespace silpose {
 

@@ -15,10 +15,10 @@
 #include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/judged_clip.h"
-#include "silpose/track/observe.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/smoother.h"
 #include "silpose/track/tracker.h"
+#include "silpose/track/visual_accuracy.h"
 
 namespace silpose {
 namespace {
@@ -33,7 +33,7 @@ constexpr double kStartsApart_s = 0.5;
 double clarity(const ClipInstant& instant) {
   double sum = 0;
   for (const Observation& o : instant.observations) {
-    if (o.trust.nothing_found || o.box.empty()) continue;
+    if (o.trust.nothing_found || o.box().empty()) continue;
     const double area = static_cast<double>(o.mask.count());
     sum += o.trust.overall * (o.trust.touches_border ? 0.5 : 1) * outline_length(o.mask) / std::sqrt(area);
   }
@@ -116,7 +116,7 @@ class ClipTracker {
     if (start_evidence(options_) != EvidenceKind::kSilhouette) {
       const auto has_keypoints = [&](size_t t) {
         const auto& seen = clip_[t].observations;
-        return !seen[start_camera(seen)].landmarks.empty();
+        return !seen[start_camera(seen)].keypoints_2d.empty();
       };
       if (std::ranges::any_of(order, has_keypoints)) {
         std::erase_if(order, [&](size_t t) { return !has_keypoints(t); });

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "silpose/shape/observation.h"
+#include "silpose/image/observation.h"
 #include "silpose/track/step_report.h"
 #include "silpose/track/tracker_options.h"
 

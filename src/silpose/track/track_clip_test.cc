@@ -26,7 +26,6 @@ class ClipTest : public ::testing::Test {
     ClipInstant instant{.frame_idx = t, .time_ns = t * int64_t{33'333'333}, .observations = {{}}};
     Observation& observation = instant.observations.front();
     observation.mask = seen ? render_silhouette(*body_, camera_, truth(t)) : Mask(camera_.width, camera_.height);
-    observation.box = observation.mask.bounding_box();
     observation.trust.nothing_found = !seen;
     return instant;
   }
@@ -190,7 +189,6 @@ class ExchangedClipTest : public ClipTest {
       clip_.push_back({.frame_idx = t, .time_ns = t * int64_t{33'333'333}, .observations = {{}}});
       Observation& seen = clip_.back().observations.front();
       seen.mask = render_silhouette(*body_, camera_, pose);
-      seen.box = seen.mask.bounding_box();
       add_keypoints(*body_, camera_, pose, seen, is_exchanged(static_cast<size_t>(t)));
     }
   }
@@ -212,8 +210,8 @@ TEST_F(ExchangedClipTest, ExchangedKeypointsDoNotCount) {
   std::vector<ClipInstant> without = clip_;
   for (size_t t = 0; t < without.size(); ++t) {
     if (!is_exchanged(t)) continue;
-    without[t].observations[0].keypoints = {};
-    without[t].observations[0].landmarks.clear();
+    without[t].observations[0].keypoints_3d = {};
+    without[t].observations[0].keypoints_2d.clear();
   }
   const std::vector<StepReport> found = track_clip(by_keypoints(true), clip_),
                                 expected = track_clip(by_keypoints(true), without);

@@ -14,8 +14,8 @@
 #include "silpose/shape/keypoint_axes.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/keypoint_sides.h"
-#include "silpose/track/observe.h"
 #include "silpose/track/pose_filter.h"
+#include "silpose/track/visual_accuracy.h"
 
 namespace silpose {
 namespace {
@@ -107,12 +107,12 @@ struct Tracker::Impl {
                                              double& most_exchanged) {
     std::vector<Observation> judged;
     for (size_t c = 0; c < observations.size(); ++c) {
-      const double exchanged = sides[c].step(observations[c].keypoints, dt_s);
+      const double exchanged = sides[c].step(observations[c].keypoints_3d, dt_s);
       most_exchanged = std::max(most_exchanged, exchanged);
       if (exchanged <= kExchanged) continue;
       if (judged.empty()) judged.assign(observations.begin(), observations.end());
-      judged[c].keypoints = {};
-      judged[c].landmarks.clear();
+      judged[c].keypoints_3d = {};
+      judged[c].keypoints_2d.clear();
     }
     return judged;
   }
@@ -135,9 +135,10 @@ struct Tracker::Impl {
     const Eigen::Vector3d tracked = line_across_pose(last_pose);
     if (tracked.isZero()) return;
     for (size_t c = 0; c < observations.size(); ++c) {
-      const std::optional<Eigen::Vector3d> seen = line_across(observations[c].keypoints);
+      const std::optional<Eigen::Vector3d> seen = line_across(observations[c].keypoints_3d);
       if (!seen) continue;
-      const double agreement = tracked.dot(world_from_keypoints(options.cameras[c], observations[c].keypoints) * *seen);
+      const double agreement =
+          tracked.dot(world_from_keypoints(options.cameras[c], observations[c].keypoints_3d) * *seen);
       const double share = is_new ? 1 : std::min(dt_s / kFacingMemory_s, 1.0);
       facing_agreement += share * (agreement - facing_agreement);
       since_facing_s = 0;
@@ -300,7 +301,7 @@ StepReport Tracker::step(const Frame& frame) {
   std::vector<Observation> observations;
   for (size_t c = 0; c < frame.images.size(); ++c) {
     if (t.segmenters.size() <= c) t.segmenters.push_back(make_online_segmenter(OnlineMixture::kMog2, {}));
-    observations.push_back(observation_from(t.segmenters[c]->segment(frame.images[c], frame.index).value()));
+    observations.push_back(t.segmenters[c]->segment(frame.images[c], frame.index).value());
   }
   const double segmenting = stopwatch.seconds();
   StepReport report = step(observations, frame.index, frame.time_ns);

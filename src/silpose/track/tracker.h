@@ -17,7 +17,7 @@
 #include "silpose/filter/state_batch.h"
 #include "silpose/image/frame.h"
 #include "silpose/image/mask.h"
-#include "silpose/shape/observation.h"
+#include "silpose/image/observation.h"
 #include "silpose/track/step_report.h"
 #include "silpose/track/tracker_options.h"
 

@@ -100,7 +100,7 @@ EvidenceKind start_evidence(const TrackerOptions& options) {
 
 size_t start_camera(std::span<const Observation> observations) {
   for (size_t c = 0; c < observations.size(); ++c) {
-    if (!observations[c].landmarks.empty() && !observations[c].box.empty()) return c;
+    if (!observations[c].keypoints_2d.empty() && !observations[c].box().empty()) return c;
   }
   return 0;
 }

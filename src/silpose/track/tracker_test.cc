@@ -51,7 +51,6 @@ class TrackerTest : public ::testing::TestWithParam<Variant> {
   Observation observe(int t) const {
     Observation observation;
     observation.mask = render_silhouette(*body_, camera_, truth(t));
-    observation.box = observation.mask.bounding_box();
     return observation;
   }
   Observation nothing() const {
@@ -163,7 +162,6 @@ TEST_P(TrackerTest, CoastsOverABadMask) {
   for (int y = 0; y < 120; ++y) {
     for (int x = 0; x < 320; ++x) bad.mask.set(x, y);
   }
-  bad.box = bad.mask.bounding_box();
   bad.trust = {.overall = 0.25, .area_jumped = true};
   const StepReport report = step(tracker, bad, 3);
   EXPECT_EQ(report.state, StepReport::State::kCoasted);
@@ -271,7 +269,6 @@ class KeypointTrackerTest : public ::testing::Test {
   Observation observe(const std::vector<double>& pose) const {
     Observation observation;
     observation.mask = render_silhouette(*body_, camera_, pose);
-    observation.box = observation.mask.bounding_box();
     return observation;
   }
   Observation with_keypoints(int t, bool exchanged = false) const {

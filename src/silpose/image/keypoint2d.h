@@ -1,4 +1,4 @@
-// SeenLandmark: a point of the body that was found in a picture. Threads: a value.
+// Keypoint2D: a point of the body that was found in a picture. Threads: a value.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace silpose {
 
-struct SeenLandmark {
+struct Keypoint2D {
   std::string name;       // of the joint, or end point, of the body: "left_shin" is the left knee
   double x = 0, y = 0;    // pixels
   double visibility = 1;  // 0 to 1
