@@ -6,7 +6,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <utility>
 
 #include "silpose/base/check.h"
@@ -16,7 +19,7 @@
 namespace silpose {
 namespace {
 
-using namespace retarget_source;  // NOLINT: the other half of this file
+using namespace retarget_source;  // NOLINT: what only this file uses
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;

@@ -5,9 +5,6 @@
 // Threads: functions without state.
 #pragma once
 
-#include <optional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "silpose/base/result.h"
@@ -36,10 +33,5 @@ struct Retargeted {
 // directions do not show stays near zero. Errors: no frame; a joint that has no match; rest pose of no size; names what
 // is missing.
 Result<Retargeted> retarget(const Clip& clip, const BodyModel& body, const RetargetOptions& options = {});
-
-// The joint of a clip (index into `names`) that corresponds to one of ours: "root", "head", "left_thigh", ...
-// Knows the names of CMU, Mixamo, MakeHuman, Xsens and common exporters, whatever their case, prefix and separators.
-// Besides our joint names, `part` may be "neck", "left_toe", "right_toe", "left_finger", "right_finger".
-std::optional<int> find_part(const std::vector<std::string>& names, std::string_view part);
 
 }  // namespace silpose

@@ -1,11 +1,10 @@
-// Which joint of a capture skeleton corresponds to which part: names are cut into a side and a plain word, and looked
-// up.
+// Names are cut into a side and a plain word, and looked up.
+#include "silpose/body/retarget_names.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <initializer_list>
-
-#include "silpose/body/retarget.h"
 
 namespace silpose {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "silpose/body/retarget.h"
+#include "silpose/body/retarget_names.h"
 
 namespace silpose::retarget_source {
 namespace {
