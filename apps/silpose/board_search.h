@@ -9,7 +9,8 @@
 
 #include "apps/silpose/console.h"
 #include "silpose/base/result.h"
-#include "silpose/calibrate/calibrate.h"
+#include "silpose/calibrate/board.h"
+#include "silpose/calibrate/sighting.h"
 
 namespace silpose::app {
 

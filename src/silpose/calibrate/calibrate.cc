@@ -6,6 +6,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/median.h"
+#include "silpose/calibrate/lens_fit.h"
 #include "silpose/calibrate/rig.h"
 
 namespace silpose {

@@ -3,11 +3,15 @@
 // For use inside module calibrate. Threads: functions without state.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
-#include <span>
+#include <optional>
 #include <vector>
 
-#include "silpose/calibrate/calibrate.h"
+#include "silpose/base/result.h"
+#include "silpose/calibrate/board.h"
+#include "silpose/calibrate/sighting.h"
+#include "silpose/geometry/camera.h"
 #include "silpose/geometry/rigid3.h"
 
 namespace silpose {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "silpose/base/median.h"
+#include "silpose/calibrate/lens_fit.h"
 
 namespace silpose {
 namespace {

@@ -2,12 +2,16 @@
 // For use inside module calibrate. Threads: functions without state.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <vector>
 
+#include "silpose/base/result.h"
+#include "silpose/calibrate/board.h"
 #include "silpose/calibrate/bundle.h"
-#include "silpose/calibrate/calibrate.h"
-#include "silpose/calibrate/lens_fit.h"
+#include "silpose/calibrate/sighting.h"
+#include "silpose/geometry/camera.h"
+#include "silpose/geometry/rigid3.h"
 
 namespace silpose {
 

@@ -22,7 +22,7 @@ inline constexpr double kWrongMm = 50;
 // that the truth has, each the root of its summed variances), surface_error_mm and surface_median_mm (over the points
 // of the true surface, distance to the nearest vertex of the posed body), observed_iou (of the estimate's silhouette
 // with the mask that was found, first camera). Scores: the mean of each over frames and, as NAME_sd, its deviation;
-// frames, frames_missing (without a pose). Against joints also lost and in_basin (score_run.h), worst_frame_mm (the
+// frames, frames_missing (without a pose). Against joints also lost and in_basin (score_parts.h), worst_frame_mm (the
 // largest joint_error_root_mm), and of what is claimed, root-aligned, over all frames and joints:
 //   coverage_joint, coverage_knee  share of coordinates, and of knee flexions by *_shin_rx, inside the 90 % interval
 //   ece_joint                      evaluate/uncertainty.h, over coordinates

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "silpose/experiment/score_run.h"
-
 namespace silpose {
 
 Recorded recorded_of(const BodyModel& body, const PinholeCamera& camera, std::span<const StepReport> reports,

@@ -27,7 +27,14 @@ Recorded recorded_of(const BodyModel& body, const PinholeCamera& camera, std::sp
 void add_mean_and_deviation(const std::string& name, const std::vector<std::vector<double>>& rows, size_t column,
                             RunResult& run);
 
-// Scores lost and in_basin (score_run.h), by the root-aligned errors of all frames [T], mm; NaN where there is no pose.
+// A run is lost when the root-aligned joint error stays above the first, mm, over this many of its last frames.
+inline constexpr double kLostMm = 150;
+inline constexpr int kLostFrames = 15;
+// A start is in the right basin when that error is below kBasinMm at the last of this many first frames.
+inline constexpr double kBasinMm = 100;
+inline constexpr int kBasinFrames = 15;
+
+// Scores lost and in_basin, by the root-aligned errors of all frames [T], mm; NaN where there is no pose.
 // REQUIRES: a frame.
 void add_verdicts(const std::vector<double>& root_errors, RunResult& run);
 

@@ -12,18 +12,12 @@
 
 namespace silpose {
 
-// A run is lost when the root-aligned joint error stays above the first, mm, over this many of its last frames.
-inline constexpr double kLostMm = 150;
-inline constexpr int kLostFrames = 15;
-// A start is in the right basin when that error is below kBasinMm at the last of this many first frames.
-inline constexpr double kBasinMm = 100;
-inline constexpr int kBasinFrames = 15;
-
 // Columns a frame: those of evaluate/evaluation.h over poses and joints, error_2d_px (over head top,
 // shoulders, elbows, wrists, knees and ankles: cormier2019, Table 5.1) and iou of the estimate's silhouette with the
 // true one in the first camera. Scores: the mean of each over frames and, as NAME_sd, its deviation; frames,
-// frames_missing (without a pose), lost, in_basin (0 or 1); interval_dof/COLUMN and interval_joint/NAME_AXIS, the share
-// of frames inside the claimed 90 % interval, and their means coverage_dof and coverage_joint.
+// frames_missing (without a pose), lost, in_basin (0 or 1; score_parts.h); interval_dof/COLUMN and
+// interval_joint/NAME_AXIS, the share of frames inside the claimed 90 % interval, and their means coverage_dof and
+// coverage_joint.
 // `tracker_body` is the body that was tracked with, of the same skeleton layout as the sequence's.
 // Errors: throws std::invalid_argument where reports are of frames that the sequence does not have.
 Result<RunResult> score_run(const SyntheticSequence& truth, const BodyModel& tracker_body,

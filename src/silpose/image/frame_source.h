@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -44,8 +43,5 @@ class FrameSource {
   // Back to the first picture.
   virtual Result<void> rewind() = 0;
 };
-
-// Errors: missing, empty, not a video, no picture in it, a gap in a numbered sequence.
-Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& input);
 
 }  // namespace silpose

@@ -7,6 +7,7 @@
 
 #include "silpose/base/clock.h"
 #include "silpose/image/frame_source.h"
+#include "silpose/image/open_frame_source.h"
 
 namespace silpose {
 

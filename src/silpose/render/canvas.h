@@ -10,7 +10,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/image/image.h"
-#include "silpose/render/draw_overlay.h"
+#include "silpose/render/colour.h"
 
 namespace silpose {
 

@@ -3,18 +3,15 @@
 // Threads: pure functions.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <span>
 
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/image/image.h"
 #include "silpose/image/mask.h"
+#include "silpose/render/colour.h"
 
 namespace silpose {
-
-using Colour = std::array<uint8_t, 3>;  // B, G, R
 
 // The borders of a mask, outer ones and holes. REQUIRES: picture of 3 channels, of the mask's size.
 void draw_outline(ByteImage& picture, const Mask& mask, Colour colour = {80, 255, 80});

@@ -1,4 +1,4 @@
-#include "silpose/image/frame_source.h"
+#include "silpose/image/open_frame_source.h"
 
 #include <algorithm>
 #include <charconv>

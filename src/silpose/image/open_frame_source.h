@@ -1,0 +1,17 @@
+// The FrameSource that an input asks for: a video file, picture files or a live camera ("camera:N"). Used by Video; not
+// for use elsewhere.
+// Threads: a function without state.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "silpose/base/result.h"
+#include "silpose/image/frame_source.h"
+
+namespace silpose {
+
+// Errors: missing, empty, not a video, no picture in it, a gap in a numbered sequence.
+Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& input);
+
+}  // namespace silpose

@@ -1,0 +1,11 @@
+// Colour of what is drawn on a picture. A value.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace silpose {
+
+using Colour = std::array<uint8_t, 3>;  // B, G, R
+
+}  // namespace silpose
