@@ -10,6 +10,7 @@
 
 #include "apps/silpose/console.h"
 #include "silpose/track/body_fit.h"
+#include "silpose/track/track_clip.h"
 #include "silpose/track/tracker_options.h"
 
 namespace silpose::app {

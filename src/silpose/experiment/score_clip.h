@@ -9,8 +9,8 @@
 #include "silpose/experiment/recorded_clip.h"
 #include "silpose/experiment/run_result.h"
 #include "silpose/geometry/camera.h"
+#include "silpose/track/clip_instant.h"
 #include "silpose/track/step_report.h"
-#include "silpose/track/track_clip.h"
 
 namespace silpose {
 

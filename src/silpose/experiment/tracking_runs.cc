@@ -13,6 +13,7 @@
 #include "silpose/synth/drawn_person.h"
 #include "silpose/synth/simulated_keypoints.h"
 #include "silpose/track/body_fit.h"
+#include "silpose/track/track_clip.h"
 
 namespace silpose {
 namespace {

@@ -18,7 +18,7 @@
 #include "silpose/experiment/run_result.h"
 #include "silpose/experiment/run_settings.h"
 #include "silpose/synth/scene.h"
-#include "silpose/track/track_clip.h"
+#include "silpose/track/clip_instant.h"
 
 namespace silpose {
 

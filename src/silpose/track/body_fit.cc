@@ -19,6 +19,7 @@
 #include "silpose/track/keypoint_sides.h"
 #include "silpose/track/plausibility.h"
 #include "silpose/track/pose_fit.h"
+#include "silpose/track/track_clip.h"
 
 namespace silpose {
 namespace {

@@ -15,8 +15,8 @@
 
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
+#include "silpose/track/clip_instant.h"
 #include "silpose/track/size_fit.h"
-#include "silpose/track/track_clip.h"
 #include "silpose/track/tracker_options.h"
 
 namespace silpose {

@@ -7,9 +7,12 @@
 #include <span>
 #include <vector>
 
+#include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/track/body_error.h"
 #include "silpose/track/mixture_filter.h"
+#include "silpose/track/plausibility.h"
 #include "silpose/track/pose_filter.h"
+#include "silpose/track/tracker_options.h"
 
 namespace silpose {
 

@@ -11,6 +11,8 @@
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
 #include "silpose/track/limb_search.h"
+#include "silpose/track/limb_variants.h"
+#include "silpose/track/limbs.h"
 #include "silpose/track/picture_moves.h"
 #include "silpose/track/place_on_mask.h"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "silpose/track/track_clip.h"
+#include "silpose/track/clip_instant.h"
 
 namespace silpose {
 

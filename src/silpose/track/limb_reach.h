@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "silpose/body/body_model.h"
 #include "silpose/track/limbs.h"
 
 namespace silpose {

@@ -1,4 +1,4 @@
-// promising_limbs(): of all poses that differ from one in a limb (limbs.h), the few that are worth a fit.
+// promising_limbs(): of all poses that differ from one in a limb (limb_variants.h), the few that are worth a fit.
 // Threads: a function without state; uses all cores and gives the same result on any number.
 #pragma once
 
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/limb_variants.h"
 #include "silpose/track/limbs.h"
 
 namespace silpose {

@@ -1,16 +1,13 @@
-// Limbs of any skeleton, found from its tree, and other poses that look almost the same in a silhouette: limbs
-// reflected in depth, exchanged, or drawn at random; the whole body mirrored in depth.
-// Based on: kinematic jump processes (references.bib: sminchisescu2003).
+// Limbs of any skeleton, found from its tree, and the DOF by which the whole body turns.
 // Threads: functions without state.
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
-#include "silpose/base/rng.h"
-#include "silpose/body/body_model.h"
+#include "silpose/body/skeleton.h"
 
 namespace silpose {
 
@@ -30,39 +27,7 @@ std::vector<std::vector<int>> limb_blocks(const Skeleton& skeleton);
 // Limbs whose DOF have the same names except for a leading right_ or left_: pairs of indices into `limbs`.
 std::vector<std::pair<size_t, size_t>> alike_limbs(const Skeleton& skeleton, std::span<const Limb> limbs);
 
-// The angles of two alike limbs, exchanged in a pose [D].
-void exchange(std::span<double> pose, const Limb& a, const Limb& b);
-
-// The pose [D] with the angles of each pair of alike limbs exchanged, one pair at a time and then all at once. From the
-// side a silhouette hardly distinguishes the legs.
-std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose);
-
-// The pose with a limb's segments reflected in the planes that face `eye`: first segment, the others, all of them.
-// A segment ends where the next joint, or the end point, is. Only DOF of the limb change; a reflection that the limits
-// do not allow to within 5 cm is left out.
-std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Limb& limb, std::span<const double> pose,
-                                                const Eigen::Vector3d& eye);
-
-// The pose with the limb's DOF drawn at random: near the pose, or anywhere within limits, each with probability 1/2.
-std::vector<double> random_limb(const Skeleton& skeleton, const Limb& limb, std::span<const double> pose, Rng& rng);
-
-// Another pose, and which limbs (indices) it differs in.
-struct LimbVariant {
-  std::vector<size_t> limbs;
-  std::vector<double> pose;  // [D]
-};
-
-// All of the above for one pose: reflections of each limb, exchanges, and `num_random` random limbs, in turn, each with
-// a second one besides with probability `two_at_once`.
-std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Limb> limbs, std::span<const double> pose,
-                                       const Eigen::Vector3d& eye, int num_random, double two_at_once, Rng& rng);
-
 // The DOF by which the body turns about the vertical: the outermost rotation of the root, if that is its axis.
 std::optional<int> turning_dof(const Skeleton& skeleton);
-
-// The pose as a mirror that faces `eye` shows it, right and left relabelled: from far away its silhouette is the same.
-// Nothing for a skeleton whose root cannot turn about the vertical.
-std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,
-                                      const Eigen::Vector3d& eye);
 
 }  // namespace silpose

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "silpose/track/limb_reach.h"
+#include "silpose/track/limb_variants.h"
 
 namespace silpose {
 namespace {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "silpose/base/rng.h"
+#include "silpose/body/body_model.h"
 #include "silpose/track/limbs.h"
 
 namespace silpose {

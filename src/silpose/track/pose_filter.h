@@ -8,7 +8,7 @@
 // Threads: one thread per filter; steps use all cores inside.
 #pragma once
 
-#include <memory>
+#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,11 +16,8 @@
 
 #include "silpose/filter/particle_set.h"
 #include "silpose/image/observation.h"
-#include "silpose/likelihood/coverage_likelihood.h"
-#include "silpose/render/silhouette.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/step_report.h"
-#include "silpose/track/tracker_options.h"
 
 namespace silpose {
 
@@ -56,19 +53,5 @@ class PoseFilter {
   [[nodiscard]] virtual std::string state() const = 0;
   virtual void restore(std::string_view state) = 0;
 };
-
-// What filters compare with: renderers of the tracker's level of detail, one per camera, for those that sample; a fine
-// and a coarse mesh for those that fit, and the priors that these use. All of the same body in front of the same
-// cameras.
-struct Likelihoods {
-  std::vector<std::shared_ptr<const BatchRenderer>> renderers;
-  std::shared_ptr<const CoverageLikelihood> fine, coarse;
-  std::shared_ptr<const Plausibility> plausibility;
-};
-
-// The filter of `options`, which are resolved. It shares the body and the likelihoods and copies what else it needs:
-// neither argument has to outlive it.
-// Errors: throws std::invalid_argument as TrackerOptions::check().
-std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const Likelihoods& likelihoods);
 
 }  // namespace silpose

@@ -14,7 +14,8 @@
 #include "silpose/filter/particle_filter.h"
 #include "silpose/likelihood/silhouette_likelihood.h"
 #include "silpose/motion/motion_model.h"
-#include "silpose/track/pose_filter.h"
+#include "silpose/track/step_report.h"
+#include "silpose/track/tracker_options.h"
 
 namespace silpose {
 

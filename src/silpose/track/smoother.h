@@ -10,8 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/clip_instant.h"
+#include "silpose/track/plausibility.h"
 #include "silpose/track/pose_fit.h"
-#include "silpose/track/track_clip.h"
 
 namespace silpose {
 

@@ -2,24 +2,16 @@
 // Threads: a function without state; uses all cores and gives the same result on any number.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "silpose/image/observation.h"
+#include "silpose/track/clip_instant.h"
 #include "silpose/track/step_report.h"
 #include "silpose/track/tracker_options.h"
 
 namespace silpose {
-
-// What was seen at one instant: one observation per camera.
-struct ClipInstant {
-  int64_t frame_idx = 0;
-  int64_t time_ns = 0;
-  std::vector<Observation> observations;  // [C]
-};
 
 // `options` for a pass over a clip that only has to find the basin: online, and on a mesh no finer than that requires.
 TrackerOptions options_of_pass(const TrackerOptions& options);

@@ -14,6 +14,7 @@
 #include "silpose/shape/keypoint_axes.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/keypoint_sides.h"
+#include "silpose/track/make_pose_filter.h"
 #include "silpose/track/pose_filter.h"
 #include "silpose/track/visual_accuracy.h"
 

@@ -1,4 +1,4 @@
-#include "silpose/track/pose_filter.h"
+#include "silpose/track/make_pose_filter.h"
 
 #include <algorithm>
 
