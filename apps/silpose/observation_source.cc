@@ -12,6 +12,7 @@
 #include "silpose/base/clock.h"
 #include "silpose/base/state_bytes.h"
 #include "silpose/image/image_file.h"
+#include "silpose/segment/make_segmenter.h"
 
 namespace silpose::app {
 namespace {

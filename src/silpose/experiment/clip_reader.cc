@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "silpose/image/video.h"
+#include "silpose/segment/make_segmenter.h"
 #include "silpose/segment/segmenter.h"
 
 namespace silpose {

@@ -20,7 +20,7 @@ namespace silpose {
 
 struct ClipInput {
   std::vector<std::string> videos;       // [C] in step
-  std::string segmenter = "learned";     // segment/segmenter.h: learned, background or masks
+  std::string segmenter = "learned";     // segment/make_segmenter.h: learned, background or masks
   std::vector<std::string> backgrounds;  // [C], or empty: auto
   int num_frames = 0;                    // the first ones; 0: all
 };

@@ -43,14 +43,6 @@ BackgroundModel learn_background(const BackgroundSamples& samples);
 // show people (none: a default). REQUIRES: equal sizes.
 BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSamples& samples = {});
 
-// Signs that a subject who does not move has become background, as fractions of the picture or of the region.
-struct BackgroundDoubt {
-  double half_covered = 0;  // a quarter of the samples or more differ from the background there
-  double ever_covered = 0;  // any sample does
-};
-BackgroundDoubt doubt_background(const BackgroundModel& model, const BackgroundSamples& samples,
-                                 const std::optional<Box>& region = {});
-
 // 8-bit B, G, R to Y, Cr, Cb, and back.
 ByteImage to_luma_chroma(const ByteImage& image);
 ByteImage from_luma_chroma(const ByteImage& image);

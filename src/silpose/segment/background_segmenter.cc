@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "silpose/segment/blob_segmenter.h"
-#include "silpose/segment/depth_model.h"
 #include "silpose/segment/edge_matte.h"
 #include "silpose/segment/foreground.h"
 #include "silpose/segment/mask_confidence.h"

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "silpose/segment/background_model.h"
+#include "silpose/segment/clean_up.h"
 #include "silpose/segment/depth_files.h"
+#include "silpose/segment/depth_model.h"
 #include "silpose/segment/segmenter.h"
 
 namespace silpose {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "silpose/base/state_bytes.h"
+#include "silpose/segment/clean_up.h"
 #include "silpose/segment/segmenter.h"
 #include "silpose/segment/trust_monitor.h"
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "silpose/segment/clean_up.h"
 #include "silpose/segment/screen_model.h"
 #include "silpose/segment/segmenter.h"
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "silpose/base/progress.h"
+#include "silpose/segment/clean_up.h"
 #include "silpose/segment/depth_files.h"
 #include "silpose/segment/depth_model.h"
 #include "silpose/segment/segmenter.h"

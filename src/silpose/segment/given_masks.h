@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "silpose/image/video.h"
+#include "silpose/segment/clean_up.h"
 #include "silpose/segment/segmenter.h"
 
 namespace silpose {

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "silpose/segment/background_model.h"
+#include "silpose/segment/clean_up.h"
 #include "silpose/segment/person_network.h"
 #include "silpose/segment/segmenter.h"
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "silpose/image/image_file.h"
+#include "silpose/segment/make_segmenter.h"
 #include "silpose/synth/colour_scene.h"
 
 namespace silpose {

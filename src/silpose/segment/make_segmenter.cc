@@ -1,16 +1,21 @@
-#include "silpose/segment/segmenter.h"
+#include "silpose/segment/make_segmenter.h"
 
 #include <charconv>
 #include <cmath>
 #include <utility>
 
 #include "silpose/image/video.h"
+#include "silpose/segment/background_doubt.h"
 #include "silpose/segment/background_model.h"
 #include "silpose/segment/background_segmenter.h"
 #include "silpose/segment/chroma_segmenter.h"
+#include "silpose/segment/depth_files.h"
+#include "silpose/segment/depth_model.h"
 #include "silpose/segment/depth_segmenter.h"
 #include "silpose/segment/given_masks.h"
 #include "silpose/segment/learned_segmenter.h"
+#include "silpose/segment/person_network.h"
+#include "silpose/segment/screen_model.h"
 
 namespace silpose {
 namespace {

@@ -1,4 +1,4 @@
-#include "silpose/segment/segmenter.h"
+#include "silpose/segment/make_segmenter.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,11 +18,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 // A clip of pictures at 10 frames per second: frames 0-9 empty, then the subject walks through, 5 pixels per frame.
-class SegmenterTest : public testing::Test {
+class MakeSegmenterTest : public testing::Test {
  protected:
   static constexpr int kEmpty = 10, kFrames = 50;
 
-  SegmenterTest() {
+  MakeSegmenterTest() {
     const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
     folder_ = fs::temp_directory_path() / ("silpose_segmenter_" + std::string(info->name()));
     fs::remove_all(folder_);
@@ -31,7 +31,7 @@ class SegmenterTest : public testing::Test {
       write_image(folder_ / "clip" / fmt::format("{:03}.png", i), picture(i)).value();
     }
   }
-  ~SegmenterTest() override { fs::remove_all(folder_); }
+  ~MakeSegmenterTest() override { fs::remove_all(folder_); }
 
   [[nodiscard]] static int place(int index) { return index < kEmpty ? -100 : -20 + 5 * (index - kEmpty); }
   [[nodiscard]] ByteImage picture(int index) const {
@@ -68,7 +68,7 @@ class SegmenterTest : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(SegmenterTest, BackgroundOfTheWholeClip) {
+TEST_F(MakeSegmenterTest, BackgroundOfTheWholeClip) {
   const auto segmenter = make_segmenter(at("clip")).value();
   EXPECT_EQ(segmenter->name(), "background auto");
   EXPECT_EQ(segmenter->first_index(), 0);
@@ -77,7 +77,7 @@ TEST_F(SegmenterTest, BackgroundOfTheWholeClip) {
 }
 
 // Each continues from its state as the one that gave it; one that learns online from seeing all.
-TEST_F(SegmenterTest, GoesOnFromItsState) {
+TEST_F(MakeSegmenterTest, GoesOnFromItsState) {
   write_masks("masks", kFrames);
   const SegmenterOptions kinds[] = {
       {.kind = "background"}, {.kind = "background", .background = "online"}, {.kind = "masks", .masks = at("masks")}};
@@ -98,13 +98,13 @@ TEST_F(SegmenterTest, GoesOnFromItsState) {
   }
 }
 
-TEST_F(SegmenterTest, BackgroundOfTheLeadIn) {
+TEST_F(MakeSegmenterTest, BackgroundOfTheLeadIn) {
   const auto segmenter = make_segmenter(at("clip"), {.background = "lead-in:1", .default_fps = 10}).value();
   EXPECT_EQ(segmenter->first_index(), 10);
   expect_finds_subject(*segmenter, 10);
 }
 
-TEST_F(SegmenterTest, BackgroundFromAPlateOrAClipOfTheEmptyScene) {
+TEST_F(MakeSegmenterTest, BackgroundFromAPlateOrAClipOfTheEmptyScene) {
   write_image(at("plate.png"), scene_.picture(-100, 77)).value();
   fs::create_directories(at("empty"));
   for (int i = 0; i < 8; ++i) write_image(at(fmt::format("empty/{}.png", i)), scene_.picture(-100, 80u + i)).value();
@@ -114,7 +114,7 @@ TEST_F(SegmenterTest, BackgroundFromAPlateOrAClipOfTheEmptyScene) {
   }
 }
 
-TEST_F(SegmenterTest, OnlineMixturesLearnFromTheEmptyStart) {
+TEST_F(MakeSegmenterTest, OnlineMixturesLearnFromTheEmptyStart) {
   for (const char* background : {"online", "online:knn"}) {
     const auto segmenter = make_segmenter(at("clip"), {.background = background}).value();
     EXPECT_EQ(segmenter->name(), std::string("background ") + background);
@@ -131,7 +131,7 @@ TEST_F(SegmenterTest, OnlineMixturesLearnFromTheEmptyStart) {
   }
 }
 
-TEST_F(SegmenterTest, GivenMasksComeThroughUnchanged) {
+TEST_F(MakeSegmenterTest, GivenMasksComeThroughUnchanged) {
   write_masks("masks", kFrames);
   const auto segmenter = make_segmenter(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->name(), "masks");
@@ -140,21 +140,21 @@ TEST_F(SegmenterTest, GivenMasksComeThroughUnchanged) {
   }
 }
 
-TEST_F(SegmenterTest, MasksThatBeginLaterBelongToTheFramesOfTheirNumbers) {
+TEST_F(MakeSegmenterTest, MasksThatBeginLaterBelongToTheFramesOfTheirNumbers) {
   write_masks("masks", kFrames - 20, 20, 20);
   const auto segmenter = make_segmenter(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->first_index(), 20);
   EXPECT_EQ(segmenter->segment(picture(30), 30).value().mask, truth(30));
 }
 
-TEST_F(SegmenterTest, AsManyMasksAsFramesBelongTogetherInOrder) {
+TEST_F(MakeSegmenterTest, AsManyMasksAsFramesBelongTogetherInOrder) {
   write_masks("masks", kFrames, 0, 1);  // numbered from 1, as some programs do
   const auto segmenter = make_segmenter(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->first_index(), 0);
   EXPECT_EQ(segmenter->segment(picture(30), 30).value().mask, truth(30));
 }
 
-TEST_F(SegmenterTest, MasksOfOtherFramesAreRefused) {
+TEST_F(MakeSegmenterTest, MasksOfOtherFramesAreRefused) {
   write_masks("after", 20, 0, 50);
   EXPECT_THAT(failure({.masks = at("after")}), HasSubstr("after: 20 masks for 50 frames of"));
   write_masks("gap", kFrames);
@@ -164,7 +164,7 @@ TEST_F(SegmenterTest, MasksOfOtherFramesAreRefused) {
   EXPECT_THAT(segmenter->segment(picture(31), 31).error().message, HasSubstr("frame 31 has none"));
 }
 
-TEST_F(SegmenterTest, LeadInCountsFromTheFirstPictureWhateverItsNumber) {
+TEST_F(MakeSegmenterTest, LeadInCountsFromTheFirstPictureWhateverItsNumber) {
   fs::create_directories(at("later"));
   for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("later/{}.png", 200 + i)), picture(i)).value();
   const auto segmenter = make_segmenter(at("later"), {.background = "lead-in:1", .default_fps = 10}).value();
@@ -172,14 +172,14 @@ TEST_F(SegmenterTest, LeadInCountsFromTheFirstPictureWhateverItsNumber) {
   EXPECT_GT(intersection_over_union(segmenter->segment(picture(30), 230).value().mask, truth(30)), 0.9);
 }
 
-TEST_F(SegmenterTest, TheInputItselfMayBeTheMasks) {
+TEST_F(MakeSegmenterTest, TheInputItselfMayBeTheMasks) {
   write_masks("masks", kFrames);
   const auto segmenter = make_segmenter(at("masks"), {.kind = "masks"}).value();
   const ByteImage image = read_colour_image(at("masks/030.png")).value();
   EXPECT_EQ(segmenter->segment(image, 30).value().mask, truth(30));
 }
 
-TEST_F(SegmenterTest, AClipOfMasksIsTakenForMasks) {
+TEST_F(MakeSegmenterTest, AClipOfMasksIsTakenForMasks) {
   write_masks("masks", kFrames);  // the first ones are all black
   const auto segmenter = make_segmenter(at("masks")).value();
   EXPECT_EQ(segmenter->name(), "masks");
@@ -195,14 +195,14 @@ TEST_F(SegmenterTest, AClipOfMasksIsTakenForMasks) {
   EXPECT_EQ(make_segmenter(at("clip")).value()->name(), "background auto");
 }
 
-TEST_F(SegmenterTest, PicturesThatAreNoMasksAreReported) {
+TEST_F(MakeSegmenterTest, PicturesThatAreNoMasksAreReported) {
   const auto segmenter = make_segmenter(at("clip"), {.kind = "masks"}).value();
   EXPECT_THAT(segmenter->warnings(), IsEmpty());
   for (int i = 0; i < 3; ++i) (void)segmenter->segment(picture(i), i).value();
   EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("clip: not only black and white")));
 }
 
-TEST_F(SegmenterTest, TooFewMasks) {
+TEST_F(MakeSegmenterTest, TooFewMasks) {
   write_masks("masks", kFrames - 8);
   EXPECT_THAT(failure({.masks = at("masks")}), HasSubstr("masks: 42 masks for 50 frames of"));
 
@@ -212,7 +212,7 @@ TEST_F(SegmenterTest, TooFewMasks) {
   EXPECT_THAT(segmenter->segment(picture(49), 49).error().message, HasSubstr("49 masks, frame 49 has none"));
 }
 
-TEST_F(SegmenterTest, OtherSizesAreRefused) {
+TEST_F(MakeSegmenterTest, OtherSizesAreRefused) {
   write_image(at("plate.png"), ByteImage(80, 60, 3)).value();
   EXPECT_THAT(failure({.background = at("plate.png")}), HasSubstr("a background of 80x60 for pictures of 160x120"));
   EXPECT_THAT(failure({.masks = at("plate.png")}), HasSubstr("masks of 80x60 for pictures of 160x120"));
@@ -226,7 +226,7 @@ TEST_F(SegmenterTest, OtherSizesAreRefused) {
   EXPECT_FALSE(segmenter->segment(ByteImage(80, 60, 3), 0).ok());
 }
 
-TEST_F(SegmenterTest, SettingsThatCannotBe) {
+TEST_F(MakeSegmenterTest, SettingsThatCannotBe) {
   EXPECT_THAT(failure({.kind = "magic"}), HasSubstr("segmenter 'magic': unknown"));
   EXPECT_THAT(failure({.background = at("none.png")}), HasSubstr("none.png: no such file"));
   EXPECT_THAT(failure({.background = "lead-in:abc"}), HasSubstr("positive number of seconds"));
@@ -237,7 +237,7 @@ TEST_F(SegmenterTest, SettingsThatCannotBe) {
 }
 
 // The scene's subject in front of a green screen that covers all but the picture's left edge.
-TEST_F(SegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
+TEST_F(MakeSegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   const auto keyed = [&](int i) {
     ByteImage image = picture(i);
     const Mask mask = truth(i);
@@ -277,7 +277,7 @@ TEST_F(SegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   EXPECT_THAT(failure({.kind = "chroma"}), HasSubstr("clip: no screen"));
 }
 
-TEST_F(SegmenterTest, DepthJoinsTheColours) {
+TEST_F(MakeSegmenterTest, DepthJoinsTheColours) {
   // A subject of the background's own colours, its shadow, and a sensor that now and then sees nothing.
   const TestScene scene{.shadow = 0.4};
   const auto camouflaged = [&](int i) {
@@ -329,7 +329,7 @@ TEST_F(SegmenterTest, DepthJoinsTheColours) {
       HasSubstr("not an online one"));
 }
 
-TEST_F(SegmenterTest, DepthSegmentsByItself) {
+TEST_F(MakeSegmenterTest, DepthSegmentsByItself) {
   const auto depth = [&](int i) {
     DepthImage image(scene_.width, scene_.height, 1, 4000);
     const Mask mask = truth(i);
@@ -370,7 +370,7 @@ TEST_F(SegmenterTest, DepthSegmentsByItself) {
               ElementsAre(HasSubstr("almost nothing is ever nearer than the background")));
 }
 
-TEST_F(SegmenterTest, WarnsOfASubjectWhoStays) {
+TEST_F(MakeSegmenterTest, WarnsOfASubjectWhoStays) {
   fs::create_directories(at("still"));
   for (int i = 0; i < 12; ++i) {
     write_image(at(fmt::format("still/{:02}.png", i)), scene_.picture(60, static_cast<uint64_t>(i))).value();
@@ -383,7 +383,7 @@ TEST_F(SegmenterTest, WarnsOfASubjectWhoStays) {
   EXPECT_THAT(make_segmenter(at("half")).value()->warnings(), ElementsAre(HasSubstr("something stays")));
 }
 
-TEST_F(SegmenterTest, StopsWhenAsked) {
+TEST_F(MakeSegmenterTest, StopsWhenAsked) {
   struct Stop : ProgressSink {
     bool update(std::string_view, int64_t done, int64_t) override { return done < 5; }
   } stop;
