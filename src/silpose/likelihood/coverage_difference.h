@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "silpose/base/aligned_floats.h"
+#include "silpose/likelihood/coverage_evidence.h"
 #include "silpose/likelihood/coverage_kernels.h"
-#include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/likelihood/jacobian_kernels.h"
 #include "silpose/render/span_kernels.h"
 

@@ -72,22 +72,4 @@ CoverageEvidence::Raster coverage_raster(const Observation& observation, int cel
   return raster;
 }
 
-double outline_length(const Mask& mask) {
-  int64_t borders = 0;
-  for (int y = 0; y < mask.height(); ++y) {
-    const auto row = mask.row(y);
-    uint64_t last = 0;
-    for (size_t w = 0; w < row.size(); ++w) {
-      const uint64_t shifted = row[w] << 1 | last;
-      uint64_t change = row[w] ^ shifted;
-      if (w == 0) change &= ~uint64_t{1};
-      if (w + 1 == row.size() && mask.width() % 64 != 0) change &= (uint64_t{1} << (mask.width() % 64)) - 1;
-      borders += std::popcount(change);
-      last = row[w] >> 63;
-      if (y > 0) borders += std::popcount(row[w] ^ mask.row(y - 1)[w]);
-    }
-  }
-  return static_cast<double>(borders) * 0.78539816339744831;  // steps of a line of random direction are 4 / pi too long
-}
-
 }  // namespace silpose

@@ -1,7 +1,8 @@
 // The cells of CoverageLikelihood: how much of each an observation covers. Threads: pure functions.
 #pragma once
 
-#include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/image/observation.h"
+#include "silpose/likelihood/coverage_evidence.h"
 
 namespace silpose {
 
