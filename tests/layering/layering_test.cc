@@ -19,6 +19,7 @@ const fs::path kProject = SILPOSE_SOURCE_DIR;
 TEST(Project, IncludesOnlyLowerFloors) {
   EXPECT_THAT(include_violations(kProject, parse_floors(SILPOSE_FLOORS)), IsEmpty());
 }
+TEST(Project, HasNoCirclesBetweenUnits) { EXPECT_THAT(unit_circles(kProject), IsEmpty()); }
 TEST(Project, HasNoFolderThatSaysNothing) { EXPECT_THAT(folder_violations(kProject), IsEmpty()); }
 TEST(Project, CitesOnlyWhatTheBibliographyHolds) { EXPECT_THAT(citation_violations(kProject), IsEmpty()); }
 
@@ -37,7 +38,8 @@ class SourceRules : public testing::Test {
   }
 
   fs::path root_;
-  Floors floors_ = parse_floors("base=0 geometry=1 image=1 filter=1 body=2 board=2 render=3 store=3 synth=4 recording=6");
+  Floors floors_ =
+      parse_floors("base=0 geometry=1 image=1 filter=1 body=2 board=2 render=3 store=3 synth=4 recording=6");
 };
 
 TEST_F(SourceRules, LowerFloorsOwnModuleAndOtherLibrariesMayBeIncluded) {
@@ -78,6 +80,31 @@ TEST_F(SourceRules, RefusesModulesWithoutAFloor) {
   EXPECT_THAT(include_violations(root_, floors_), ElementsAre(HasSubstr("'magic' has no floor")));
 }
 
+TEST_F(SourceRules, FindsCirclesBetweenUnits) {
+  write("src/silpose/track/limbs.h", "");
+  write("src/silpose/track/limbs.cc", "#include \"silpose/track/limbs.h\"\n#include \"silpose/track/limb_reach.h\"\n");
+  write("src/silpose/track/limb_reach.h", "#include \"silpose/track/limbs.h\"\n");
+  write("src/silpose/track/tracker.cc", "#include \"silpose/track/limbs.h\"\n");  // leads to a circle, is in none
+  write("bench/c.h", "#include \"a.h\"\n");
+  write("bench/a.h", "");
+  write("bench/a-inl.h", "#  include <compare/b.h>\n");
+  write("bench/compare/b.h", "");
+  write("bench/compare/b.cc", "#include \"../c.h\"\n#include \"b.h\"\n");
+  write("apps/silpose/x.h", "#include \"apps/silpose/y.h\"\n");
+  write("apps/silpose/y.h", "#include \"apps/silpose/x.h\"\n#include \"apps/silpose/z.h\"\n");
+  write("apps/silpose/z.h", "#include \"apps/silpose/y.h\"\n");
+  EXPECT_THAT(unit_circles(root_), ElementsAre("apps/silpose: x -> y -> x", "bench: a -> compare/b -> c -> a",
+                                               "src/silpose/track: limb_reach -> limbs -> limb_reach"));
+}
+
+TEST_F(SourceRules, UnitsMayDependOnOneAnotherOneWay) {
+  write("src/sadb/board/entry.h", "#include \"sadb/board/time.h\"\n");
+  write("src/sadb/board/time.h", "");
+  write("src/sadb/board/time.cc", "#include \"sadb/board/time.h\"\n#include \"sadb/store/store.h\"\n");
+  write("src/sadb/store/store.h", "#include \"sadb/board/entry.h\"\n");  // another module: the floors' matter
+  EXPECT_THAT(unit_circles(root_), IsEmpty());
+}
+
 TEST_F(SourceRules, RefusesFoldersThatSayNothing) {
   write("src/silpose/util/a.h", "");
   write("apps/silpose/common/a.h", "");
@@ -90,8 +117,9 @@ TEST_F(SourceRules, RefusesCitationsThatDoNotResolve) {
   write("src/silpose/body/a.h",
         "// Source: deutscher2005, eq. 3 (references.bib: opencv; deutscher2005 for the rest).\n"
         "int x2005 = 0xab2001;  // fine\n// See kalman1960a.\n// (references.bib: opencv, makehuman)\n");
-  EXPECT_THAT(citation_violations(root_), ElementsAre("src/silpose/body/a.h:3: 'kalman1960a' is not in docs/references.bib",
-                                                      "src/silpose/body/a.h:4: 'makehuman' is not in docs/references.bib"));
+  EXPECT_THAT(citation_violations(root_),
+              ElementsAre("src/silpose/body/a.h:3: 'kalman1960a' is not in docs/references.bib",
+                          "src/silpose/body/a.h:4: 'makehuman' is not in docs/references.bib"));
 }
 
 }  // namespace

@@ -70,6 +70,44 @@ std::string refusal(const Place& from, const Place& to, bool is_test, const Floo
   return "";
 }
 
+// "src/silpose/track/limbs.cc" -> {"src/silpose/track", "limbs"}; empty where a file is of no module.
+struct Unit {
+  std::string module, name;
+};
+Unit unit_of(const fs::path& file) {
+  static const std::regex kUnit(R"(((?:src/(?:silpose|sadb)/[^/]+|apps/silpose|bench))/(.+?)(?:-inl)?\.(?:h|cc))");
+  const std::string path = file.generic_string();
+  std::smatch match;
+  if (!std::regex_match(path, match, kUnit)) return {};
+  return {match[1], match[2]};
+}
+
+// The file that an #include line names, relative to the root; empty where it is not of the tree.
+fs::path included_file(const fs::path& root, const fs::path& from, const std::string& name) {
+  for (const fs::path& folder : {from.parent_path(), fs::path("src"), fs::path()}) {
+    const fs::path file = (folder / name).lexically_normal();
+    if (fs::is_regular_file(root / file)) return file;
+  }
+  return {};
+}
+
+using Dependencies = std::map<std::string, std::set<std::string>>;  // unit -> units that it includes
+
+// Each unit that is reached from `start`, itself only by a circle; with the one before it on a shortest way.
+std::map<std::string, std::string> reached_from(const std::string& start, const Dependencies& dependencies) {
+  std::map<std::string, std::string> before;
+  std::vector<std::string> found = {start};
+  for (size_t i = 0; i < found.size(); ++i) {
+    const std::string unit = found[i];
+    const auto included = dependencies.find(unit);
+    if (included == dependencies.end()) continue;
+    for (const std::string& next : included->second) {
+      if (before.emplace(next, unit).second) found.push_back(next);
+    }
+  }
+  return before;
+}
+
 std::set<std::string> bibliography_keys(const fs::path& file) {
   static const std::regex kEntry(R"(^\s*@\w+\s*\{\s*([^,\s]+)\s*,)");
   std::set<std::string> keys;
@@ -123,8 +161,41 @@ std::vector<std::string> include_violations(const fs::path& root, const Floors& 
   return violations;
 }
 
+std::vector<std::string> unit_circles(const fs::path& root) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*["<]([^">]+)[">])");
+  std::map<std::string, Dependencies> modules;
+  for (const char* top : {"src", "apps", "bench"}) {
+    for_each_line(root, top, [&](const fs::path& file, int, const std::string& line) {
+      std::smatch match;
+      if (file.stem().string().ends_with("_test") || !std::regex_search(line, match, kInclude)) return;
+      const Unit from = unit_of(file), to = unit_of(included_file(root, file, match[1]));
+      if (from.module.empty() || from.module != to.module || from.name == to.name) return;
+      modules[from.module][from.name].insert(to.name);
+    });
+  }
+  std::vector<std::string> circles;
+  for (const auto& [module, dependencies] : modules) {
+    std::set<std::string> reported;
+    for (const auto& [unit, included] : dependencies) {
+      const auto before = reached_from(unit, dependencies);
+      if (reported.contains(unit) || !before.contains(unit)) continue;
+      std::string circle = unit;
+      for (std::string last = before.at(unit);; last = before.at(last)) {
+        circle.insert(0, last + " -> ");
+        if (last == unit) break;
+      }
+      circles.push_back(module + ": " + circle);
+      for (const auto& [other, previous] : before) {
+        if (reached_from(other, dependencies).contains(unit)) reported.insert(other);
+      }
+    }
+  }
+  return circles;
+}
+
 std::vector<std::string> folder_violations(const fs::path& root) {
-  static const std::set<std::string> kRefused = {"util", "utils", "utility", "common", "core", "helper", "helpers", "misc"};
+  static const std::set<std::string> kRefused = {"util", "utils",  "utility", "common",
+                                                 "core", "helper", "helpers", "misc"};
   std::vector<std::string> violations;
   for (const char* top : {"src", "apps", "bench", "examples", "tests"}) {
     if (!fs::is_directory(root / top)) continue;

@@ -1,5 +1,5 @@
 // The rules of ARCHITECTURE.md that the build does not enforce by itself, over the text of a source tree.
-// Each function returns one line per violation, "file:line: what is wrong"; none: the tree obeys.
+// Each function returns one line per violation, "file:line: what is wrong" or as it says; none: the tree obeys.
 // Threads: functions without state.
 #pragma once
 
@@ -19,6 +19,11 @@ Floors parse_floors(std::string_view text);
 // #include lines under ROOT/src: a module of silpose or sadb includes itself and modules of strictly lower floors; its
 // tests also `synth`. sadb sees only base, geometry and image of silpose; below `recording`, silpose does not see sadb.
 std::vector<std::string> include_violations(const std::filesystem::path& root, const Floors& floors);
+
+// Circles of #include lines between units of one module: of src/silpose/*, of src/sadb/*, of apps/silpose or of bench.
+// A unit is NAME.h, NAME.cc and NAME-inl.h; tests (*_test.cc) do not count. One line for each set of units that all
+// depend on one another, with a shortest circle among them: "src/silpose/track: limb_reach -> limbs -> limb_reach".
+std::vector<std::string> unit_circles(const std::filesystem::path& root);
 
 // Folders with names that do not say what is in them, anywhere under ROOT/{src,apps,bench,examples,tests}.
 std::vector<std::string> folder_violations(const std::filesystem::path& root);
