@@ -3,8 +3,8 @@
 set(SILPOSE_FLOORS
   base=0
   geometry=1 image=1 filter=1
-  body=2 segment=2 shape=2 calibrate=2 board=2
-  render=3 motion=3 exchange=3 store=3
+  video=2 body=2 shape=2 calibrate=2 board=2
+  segment=3 render=3 motion=3 exchange=3 store=3
   likelihood=4 synth=4
   track=5 evaluate=5
   recording=6

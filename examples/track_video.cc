@@ -13,12 +13,14 @@ int main(int argc, char** argv) {
   try {
     const auto body = std::make_shared<silpose::BodyModel>(silpose::load_body(argv[1]).value());
     const auto cameras = silpose::load_cameras(argv[2]).value();
-    silpose::Tracker tracker({.body = body, .cameras = cameras, .num_particles = 50, .num_layers = 4, .seed = 1});
     auto video = silpose::open_video(argv[3]).value();
+    const auto segmenter = silpose::make_segmenter(video).value();  // by a background that it learns from the clip
+    video.rewind().value();
+    silpose::Tracker tracker({.body = body, .cameras = cameras, .seed = 1});
     for (const silpose::Frame& frame : video) {
-      const silpose::StepReport report = tracker.step(frame);
-      fmt::print("{:.3f} s  ESS {:.0f}  visual accuracy {:.2f}\n", report.time_s(), report.effective_sample_size,
-                 report.visual_accuracy);
+      const silpose::Observation seen = segmenter->segment(frame.images[0], frame.index).value();
+      const silpose::StepReport report = tracker.step({&seen, 1}, frame.index, frame.time_ns);
+      fmt::print("{:.3f} s  visual accuracy {:.2f}\n", report.time_s(), report.visual_accuracy);
     }
   } catch (const std::exception& failure) {
     fmt::print(stderr, "track_video: {}\n", failure.what());

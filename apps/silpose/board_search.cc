@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "silpose/base/parallel.h"
-#include "silpose/image/video.h"
+#include "silpose/video/video.h"
 
 namespace silpose::app {
 namespace {

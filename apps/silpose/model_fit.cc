@@ -39,10 +39,11 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
     return error("--out {}: there is no folder {}", options.out, folder.string());
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
   if (!body) return body.failure();
-  const Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
-  if (!cameras) return cameras.failure();
-  Result<ObservationSource> source = ObservationSource::open(options.input, console);
+  Result<ObservationSource> source = ObservationSource::open(options.input);
   if (!source) return source.failure();
+  const Result<CameraChoice> cameras = choose_cameras(options.camera, source->sizes());
+  if (!cameras) return cameras.failure();
+  if (const Result<void> learned = source->learn(console); !learned) return learned.failure();
   const Result<std::vector<ClipInstant>> clip = read_clip_of(*source, console);
   if (!clip) return clip.failure();
   if (Console::interrupted()) return error("interrupted: nothing is written");

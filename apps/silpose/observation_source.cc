@@ -142,18 +142,7 @@ void add_input_options(CLI::App& command, InputOptions& options) {
   command.add_option("--end", options.end_s, "Seconds to end at, included")->check(within(0, 1e6));
 }
 
-Result<CameraChoice> choose_cameras_of(const InputOptions& input, const CameraOptions& camera) {
-  const Result<Video> video = open_video(input.videos, input.video_options());
-  if (!video) return video.failure();
-  std::vector<PictureSize> sizes;
-  sizes.reserve(static_cast<size_t>(video->num_cameras()));
-  for (int c = 0; c < video->num_cameras(); ++c) {
-    sizes.push_back({video->width(c), video->height(c), video->focal_mm35(c)});
-  }
-  return choose_cameras(camera, sizes);
-}
-
-Result<ObservationSource> ObservationSource::open(const InputOptions& options, Console& console) {
+Result<ObservationSource> ObservationSource::open(const InputOptions& options) {
   if (options.videos.empty()) throw UsageError("VIDEO is missing");
   if (options.start_s && options.end_s && *options.end_s < *options.start_s) {
     throw UsageError(fmt::format("--start {}: is after --end {}", *options.start_s, *options.end_s));
@@ -175,47 +164,60 @@ Result<ObservationSource> ObservationSource::open(const InputOptions& options, C
   source.end_ns_ =
       options.end_s ? std::llround((*options.end_s + margin_s) * 1e9) : std::numeric_limits<int64_t>::max();
 
+  return source;
+}
+
+Result<void> ObservationSource::learn(Console& console) {
   const Stopwatch learning;
-  const auto count = static_cast<size_t>(opened.num_cameras());
+  segmenters_.clear();
+  const auto count = static_cast<size_t>(video_->num_cameras());
   for (size_t camera = 0; camera < count; ++camera) {
     SegmenterOptions segmenter;
-    segmenter.kind = options.segmenter;
-    segmenter.background = of_camera("--background", options.backgrounds, camera, count, "");
+    segmenter.kind = options_.segmenter;
+    const std::string background = of_camera("--background", options_.backgrounds, camera, count, "");
+    if (!background.empty()) {
+      Result<BackgroundOrigin> origin = background_origin_of(background);
+      if (!origin) return origin.failure();
+      segmenter.background = std::move(*origin);
+    }
     segmenter.networks = (data_directory() / "networks").string();
-    segmenter.masks = of_camera("--masks", options.masks, camera, count, "");
-    segmenter.key_colour = parse_key_colour(options.key_colour).value();
-    segmenter.depth = of_camera("--depth", options.depths, camera, count, "");
-    segmenter.depth_range = parse_depth_range(options.depth_range);
-    segmenter.default_fps = options.video_options().default_fps;
-    const Result<CleanUpOptions> clean_up = clean_up_options(options, opened, camera);
+    segmenter.masks = of_camera("--masks", options_.masks, camera, count, "");
+    segmenter.key_colour = parse_key_colour(options_.key_colour).value();
+    segmenter.depth = of_camera("--depth", options_.depths, camera, count, "");
+    segmenter.depth_range = parse_depth_range(options_.depth_range);
+    const Result<CleanUpOptions> clean_up = clean_up_options(options_, *video_, camera);
     if (!clean_up) return clean_up.failure();
     segmenter.clean_up = *clean_up;
-    Result<std::unique_ptr<Segmenter>> made = make_segmenter(options.videos[camera], segmenter, &console);
+    Video alone = video_->alone(static_cast<int>(camera));
+    Result<std::unique_ptr<Segmenter>> made = make_segmenter(alone, segmenter, &console);
     if (!made) return made.failure();
-    source.segmenters_.push_back(std::move(*made));
+    segmenters_.push_back(std::move(*made));
   }
-  source.learning_s_ = learning.seconds();
-  source.first_state_ = source.state();
-  return source;
+  if (Result<void> rewound = video_->rewind(); !rewound) return rewound;
+  learning_s_ += learning.seconds();
+  num_seen_ = num_cut_ = 0;
+  first_state_ = state();
+  return {};
 }
 
 Result<void> ObservationSource::rewind(Console& console) {
   if (Result<void> done = ahead_->finish(); !done) return done;
   next_.reset();
-  if (std::ranges::all_of(segmenters_, [](const auto& segmenter) { return segmenter->can_go_back(); })) {
-    Result<Video> video = open_video(options_.videos, options_.video_options());
-    if (!video) return video.failure();
-    *video_ = std::move(*video);
-    restore(first_state_);
-    stride_ = 1;
-    num_wanted_ = 0;
-    return {};
+  stride_ = 1;
+  num_wanted_ = 0;
+  if (!std::ranges::all_of(segmenters_, [](const auto& segmenter) { return segmenter->can_go_back(); })) {
+    return learn(console);
   }
-  Result<ObservationSource> fresh = open(options_, console);
-  if (!fresh) return fresh.failure();
-  fresh->learning_s_ += learning_s_;
-  *this = std::move(*fresh);
-  return {};
+  restore(first_state_);
+  return video_->rewind();
+}
+
+Result<Video*> ObservationSource::videos_again() {
+  if (Result<void> done = ahead_->finish(); !done) return done.failure();
+  next_.reset();
+  video_warnings_ = video_->warnings();  // a shorter pass would not find them all again
+  if (Result<void> rewound = video_->rewind(); !rewound) return rewound.failure();
+  return video_.get();
 }
 
 void ObservationSource::expect(std::vector<Mask> silhouettes) {
@@ -323,7 +325,8 @@ Result<std::optional<Instant>> ObservationSource::read(bool segments) {
 std::vector<PictureSize> ObservationSource::sizes() const {
   std::vector<PictureSize> sizes;
   sizes.reserve(static_cast<size_t>(video_->num_cameras()));
-  for (int c = 0; c < video_->num_cameras(); ++c) sizes.push_back({video_->width(c), video_->height(c)});
+  for (int c = 0; c < video_->num_cameras(); ++c)
+    sizes.push_back({video_->width(c), video_->height(c), video_->focal_mm35(c)});
   return sizes;
 }
 
@@ -363,7 +366,7 @@ std::vector<std::string> ObservationSource::warnings() const {
                     "assumed, and what lies outside is guessed",
                     video_->name(), 100.0 * static_cast<double>(num_cut_) / static_cast<double>(num_seen_)));
   }
-  const std::vector<std::string> of_video = video_->warnings();
+  const std::vector<std::string> of_video = video_warnings_ ? *video_warnings_ : video_->warnings();
   all.insert(all.end(), of_video.begin(), of_video.end());
   return all;
 }

@@ -15,8 +15,8 @@
 #include "silpose/base/job_line.h"
 #include "silpose/base/result.h"
 #include "silpose/image/observation.h"
-#include "silpose/image/video.h"
 #include "silpose/segment/segmenter.h"
+#include "silpose/video/video.h"
 
 namespace silpose::app {
 
@@ -35,9 +35,6 @@ struct InputOptions {
 
 void add_input_options(CLI::App& command, InputOptions& options);
 
-// Cameras for the videos, before any background is learned. Errors: those of open_video() and choose_cameras().
-Result<CameraChoice> choose_cameras_of(const InputOptions& input, const CameraOptions& camera);
-
 // Everything of one instant.
 struct Instant {
   Frame frame;
@@ -48,9 +45,12 @@ struct Instant {
 // Not to be moved once next() was called: what it reads ahead refers to it.
 class ObservationSource {
  public:
-  // Learns the backgrounds that have to be learned. Errors: those of open_video() and make_segmenter(); a garbage mask
-  // of another size. Throws UsageError for options that do not fit together.
-  static Result<ObservationSource> open(const InputOptions& options, Console& console);
+  // Opens the videos. Errors: those of open_video(). Throws UsageError for options that do not fit together.
+  static Result<ObservationSource> open(const InputOptions& options);
+
+  // Makes the segmenters, which learn what they have to learn. Errors: those of make_segmenter(); a garbage mask of
+  // another size. REQUIRES: called before the first next().
+  Result<void> learn(Console& console);
 
   // From here on about `count` instants are given, evenly over the clip; the others are not segmented.
   void thin_out_to(int64_t count);
@@ -63,7 +63,7 @@ class ObservationSource {
   // The same, without masks: only segmenters that must see every picture are shown it.
   Result<std::optional<Frame>> skip();
 
-  // Back to the first instant, as if none had been given; what was learned is not learned again. Errors: as open().
+  // Back to the first instant, as if none had been given; what was learned is not learned again. Errors: as learn().
   Result<void> rewind(Console& console);
 
   // What next() carries from call to call. Another source with the same options that skipped as many instants continues
@@ -72,16 +72,17 @@ class ObservationSource {
   [[nodiscard]] std::string state() const;
   void restore(std::string_view state);
 
+  // The videos from their first frame on, for a pass of their own. REQUIRES: no next() afterwards.
+  Result<Video*> videos_again();
+
   [[nodiscard]] const Video& video() const { return *video_; }
   [[nodiscard]] std::vector<PictureSize> sizes() const;
   // How many instants next() will give, where that is known; 0 otherwise.
   [[nodiscard]] int64_t num_expected() const;
   [[nodiscard]] std::string background() const;  // "background auto", "masks", ... of each camera
-  [[nodiscard]] bool finds_keypoints() const;
+  [[nodiscard]] bool finds_keypoints() const;    // of any camera
   // Observation::ignored of a camera.
-  [[nodiscard]] std::shared_ptr<const Mask> ignored(size_t camera) const {
-    return segmenters_[camera]->ignored();
-  }                                                                // of any camera
+  [[nodiscard]] std::shared_ptr<const Mask> ignored(size_t camera) const { return segmenters_[camera]->ignored(); }
   [[nodiscard]] std::vector<std::string> warnings() const;         // whole only after the last next()
   [[nodiscard]] double learning_s() const { return learning_s_; }  // time spent before the first instant
 
@@ -102,6 +103,7 @@ class ObservationSource {
   std::unique_ptr<Video> video_;
   std::vector<std::unique_ptr<Segmenter>> segmenters_;
   std::vector<std::string> warnings_;
+  std::optional<std::vector<std::string>> video_warnings_;  // of the last pass but that of videos_again()
   std::string first_state_;
   int64_t stride_ = 1, num_wanted_ = 0;
   int64_t num_seen_ = 0, num_cut_ = 0;  // masks with a subject, and of these at the edge of the picture

@@ -23,8 +23,9 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
   if (options.input.videos.size() > 1) throw UsageError("VIDEO: only one is allowed");
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
   if (!directory) return directory.failure();
-  Result<ObservationSource> source = ObservationSource::open(options.input, console);
+  Result<ObservationSource> source = ObservationSource::open(options.input);
   if (!source) return source.failure();
+  if (const Result<void> learned = source->learn(console); !learned) return learned.failure();
   std::error_code failed;  // the first mask would report it
   std::filesystem::create_directories(directory->path() / "masks", failed);
 

@@ -30,10 +30,11 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
   const auto pose =
       read_initial_pose(options, (*body)->skeleton, 0);  // errors in it are reported before the clip is read
   if (!pose) return pose.failure();
-  Result<CameraChoice> cameras = choose_cameras_of(options.input, options.camera);
-  if (!cameras) return cameras.failure();
-  Result<ObservationSource> source = ObservationSource::open(options.input, console);
+  Result<ObservationSource> source = ObservationSource::open(options.input);
   if (!source) return source.failure();
+  Result<CameraChoice> cameras = choose_cameras(options.camera, source->sizes());
+  if (!cameras) return cameras.failure();
+  if (const Result<void> learned = source->learn(console); !learned) return learned.failure();
   options.fit_body = fits_body(options, source->finds_keypoints());
   if (estimates_camera(options)) {
     const Result<void> estimated = estimate_camera_of(*source, (*body)->height_m, *cameras, console);

@@ -296,13 +296,14 @@ class TrackRun {
 
   // The overlay, in a second pass over the pictures.
   Result<void> draw() {
-    Result<Video> video = open_video(options_.input.videos, options_.input.video_options());
-    if (!video) return video.failure();
+    const Result<Video*> again = source_.videos_again();
+    if (!again) return again.failure();
+    Video& video = **again;
     const auto total = std::ssize(now_.reports);
     for (int64_t drawn = 0; drawn < total && console_.update("writing", drawn, total);) {
-      Result<std::optional<Frame>> frame = video->next();
+      Result<std::optional<Frame>> frame = video.next();
       if (!frame) return frame.failure();
-      if (!frame->has_value()) return error("{}: ended earlier when it was read again", video->name());
+      if (!frame->has_value()) return error("{}: ended earlier when it was read again", video.name());
       const StepReport& report = now_.reports[static_cast<size_t>(drawn)];
       if ((*frame)->index < report.frame_idx) continue;
       Result<void> added =

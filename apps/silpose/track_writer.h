@@ -15,10 +15,10 @@
 #include "silpose/body/body_model.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/image/observation.h"
-#include "silpose/image/video.h"
 #include "silpose/recording/track_recorder.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/report/mask_strip.h"
+#include "silpose/video/video.h"
 
 namespace silpose::app {
 

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "silpose/image/clip_for_test.h"
-#include "silpose/image/video.h"
+#include "silpose/video/clip_for_test.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "silpose/calibrate/board_for_test.h"
 #include "silpose/geometry/calibration_file.h"
-#include "silpose/image/video.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 namespace {

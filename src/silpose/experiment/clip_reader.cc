@@ -4,9 +4,9 @@
 #include <memory>
 #include <utility>
 
-#include "silpose/image/video.h"
 #include "silpose/segment/make_segmenter.h"
 #include "silpose/segment/segmenter.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 namespace {
@@ -36,9 +36,15 @@ Result<const ClipReader::Segmented*> ClipReader::segment(const ClipInput& input,
   now.key = key;
   Result<Video> video = open_video(path);
   if (!video) return video.failure();
-  const auto segmenter = make_segmenter(
-      path, {.kind = input.segmenter, .background = is_background ? background : "", .networks = networks_});
+  SegmenterOptions options{.kind = input.segmenter, .networks = networks_};
+  if (is_background) {
+    Result<BackgroundOrigin> origin = background_origin_of(background);
+    if (!origin) return origin.failure();
+    options.background = std::move(*origin);
+  }
+  const auto segmenter = make_segmenter(*video, options);
   if (!segmenter) return segmenter.failure();
+  if (Result<void> rewound = video->rewind(); !rewound) return rewound.failure();
   while (now.seen.empty() || !is_enough(now)) {
     if (!go_on()) return nullptr;
     const Result<std::optional<Frame>> frame = video->next();

@@ -1,5 +1,5 @@
-// FrameSource: where one camera's pictures come from: a video file, a list of picture files, a live camera. Used by
-// Video; not for use elsewhere.
+// FrameSource: where one camera's images come from: a video file, image files, a live camera, memory. A program's own
+// source is one more implementation.
 // Threads: one thread per source.
 #pragma once
 
@@ -15,33 +15,36 @@
 namespace silpose {
 
 struct Picture {
-  ByteImage image;                 // [H, W, 3]
-  std::optional<int64_t> time_ns;  // since the first picture; nothing where the input has no times
+  ByteImage image;                 // [H, W, 3] B, G, R
+  std::optional<int64_t> time_ns;  // since the first picture; nullopt where the input has no time for it
 };
 
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  // Known once the first picture has been read.
-  [[nodiscard]] virtual double fps() const { return 0; }  // 0: carries no rate
-  [[nodiscard]] virtual bool has_times() const { return false; }
-  [[nodiscard]] virtual int64_t num_frames_hint() const { return 0; }  // 0: unknown
-  [[nodiscard]] virtual bool is_live() const { return false; }
-  // The lens's focal length as the 35 mm equivalent from the input's metadata, mm; nothing where they lack it.
-  [[nodiscard]] virtual std::optional<double> focal_mm35() const { return {}; }
-  // The numbers of its pictures, ascending; empty: they are counted from 0.
-  [[nodiscard]] virtual std::span<const int64_t> numbers() const { return {}; }
+  // For messages: a path, "camera:0", "memory".
+  [[nodiscard]] virtual const std::string& name() const = 0;
 
-  // The next picture, nothing at the end.
+  // The next picture, nullopt at the end. Errors: unreadable.
   virtual Result<std::optional<Picture>> next() = 0;
-  // At the end: whether it came earlier than the input announced.
+
+  // Back to the first picture. Errors: a live camera; the input vanished.
+  virtual Result<void> rewind() = 0;
+
+  // The rest is optional. It is known once the first picture has been read.
+  [[nodiscard]] virtual double fps() const { return 0; }               // 0: unknown
+  [[nodiscard]] virtual bool has_times() const { return false; }       // pictures have time_ns
+  [[nodiscard]] virtual int64_t num_frames_hint() const { return 0; }  // 0: unknown
+  [[nodiscard]] virtual bool is_live() const { return false; }         // cannot rewind; times are the clock's
+  // The lens's focal length as the 35 mm equivalent according to the metadata, mm.
+  [[nodiscard]] virtual std::optional<double> focal_mm35() const { return {}; }
+  // Numbers of the pictures, strictly increasing; empty: they are numbered from 0.
+  [[nodiscard]] virtual std::span<const int64_t> numbers() const { return {}; }
+  // At the end: it came before the input said it would.
   [[nodiscard]] virtual bool broke_off() const { return false; }
   // What the user should know about the pictures read so far, one line each.
   [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
-
-  // Back to the first picture.
-  virtual Result<void> rewind() = 0;
 };
 
 }  // namespace silpose

@@ -13,7 +13,7 @@
 #include "silpose/base/result.h"
 #include "silpose/image/image.h"
 #include "silpose/image/mask.h"
-#include "silpose/image/video.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "silpose/image/video.h"
 #include "silpose/segment/clean_up.h"
 #include "silpose/segment/segmenter.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 

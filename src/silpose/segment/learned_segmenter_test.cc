@@ -257,15 +257,17 @@ TEST(LearnedSegmenter, IsChosenWhereNothingElseIsAskedFor) {
     write_image((folder / fmt::format("clip/{}.png", i)).string(), ByteImage(64, 48, 3, 90)).value();
   }
   const std::string clip = (folder / "clip").string();
-  EXPECT_EQ(make_segmenter(clip, {.networks = kNetworks}).value()->name(), "learned");
-  EXPECT_EQ(make_segmenter(clip, {.networks = folder.string()}).value()->name(), "background auto");
-  EXPECT_EQ(make_segmenter(clip, {.background = "auto", .networks = kNetworks}).value()->name(), "background auto");
-  EXPECT_EQ(make_segmenter(clip, {.networks = kNetworks, .masks = clip}).value()->name(), "masks");
-  EXPECT_THAT(make_segmenter(clip, {.kind = "learned", .networks = folder.string()}).error().message,
+  Video video = open_video(clip).value();
+  EXPECT_EQ(make_segmenter(video, {.networks = kNetworks}).value()->name(), "learned");
+  EXPECT_EQ(make_segmenter(video, {.networks = folder.string()}).value()->name(), "background auto");
+  EXPECT_EQ(make_segmenter(video, {.background = BackgroundOfClip{}, .networks = kNetworks}).value()->name(),
+            "background auto");
+  EXPECT_EQ(make_segmenter(video, {.networks = kNetworks, .masks = clip}).value()->name(), "masks");
+  EXPECT_THAT(make_segmenter(video, {.kind = "learned", .networks = folder.string()}).error().message,
               HasSubstr("pose_landmark_full.tflite: no such file; scripts/fetch-network-data fetches it"));
   fs::copy_file(fs::path(kNetworks) / "pose_detection.tflite", folder / "pose_landmark_full.tflite",
                 fs::copy_options::overwrite_existing);
-  EXPECT_THAT(make_segmenter(clip, {.kind = "learned", .networks = folder.string()}).error().message,
+  EXPECT_THAT(make_segmenter(video, {.kind = "learned", .networks = folder.string()}).error().message,
               HasSubstr("no output 'Identity_2'"));
   fs::remove_all(folder);
 }

@@ -1,10 +1,8 @@
 #include "silpose/segment/make_segmenter.h"
 
-#include <charconv>
 #include <cmath>
 #include <utility>
 
-#include "silpose/image/video.h"
 #include "silpose/segment/background_doubt.h"
 #include "silpose/segment/background_model.h"
 #include "silpose/segment/background_segmenter.h"
@@ -41,27 +39,20 @@ std::vector<std::string> doubts(const std::string& input, const BackgroundModel&
   return {};
 }
 
-Result<void> check_sizes(const std::string& input, const Video& video, const CleanUpOptions& clean_up) {
+Result<void> check_sizes(const Video& video, const CleanUpOptions& clean_up) {
   const int width = video.width(), height = video.height();
   if (clean_up.garbage_mask && (clean_up.garbage_mask->width() != width || clean_up.garbage_mask->height() != height)) {
-    return error("{}: pictures of {}x{}, the garbage mask is {}x{}", input, width, height,
+    return error("{}: pictures of {}x{}, the garbage mask is {}x{}", video.name(), width, height,
                  clean_up.garbage_mask->width(), clean_up.garbage_mask->height());
   }
   if (const auto& region = clean_up.region) {
     if (region->x >= width || region->y >= height || region->x + region->width <= 0 ||
         region->y + region->height <= 0) {
-      return error("{}: the region {},{},{},{} lies outside its pictures of {}x{}", input, region->x, region->y,
+      return error("{}: the region {},{},{},{} lies outside its pictures of {}x{}", video.name(), region->x, region->y,
                    region->width, region->height, width, height);
     }
   }
   return {};
-}
-
-Result<Video> open_input(const std::string& input, const SegmenterOptions& options) {
-  Result<Video> video = open_video(input, {.default_fps = options.default_fps});
-  if (!video) return video;
-  if (const auto fits = check_sizes(input, *video, options.clean_up); !fits) return fits.failure();
-  return video;
 }
 
 // What to add to the number of one of `count` pictures (masks, depth), the first numbered `first`, for the number of
@@ -78,36 +69,40 @@ Result<int64_t> offset_to_frames(const std::string& name, const char* what, int6
   return offset;
 }
 
-Result<std::unique_ptr<Segmenter>> make_masks(const std::string& input, const SegmenterOptions& options) {
-  Result<Video> video = open_input(input, options);
-  if (!video) return video.failure();
+Result<std::unique_ptr<Segmenter>> make_masks(const Video& video, const SegmenterOptions& options) {
   if (options.masks.empty()) {
     std::vector<std::string> warnings;
     if (options.kind == "auto") {
-      warnings.push_back(fmt::format("{}: black and white only, so used as masks (--segmenter overrides this)", input));
+      warnings.push_back(
+          fmt::format("{}: black and white only, so used as masks (--segmenter overrides this)", video.name()));
     }
-    return make_given_masks(input, {}, 0, options.clean_up, std::move(warnings));
+    return make_given_masks(video.name(), {}, 0, options.clean_up, std::move(warnings));
   }
-  Result<Video> masks = open_video(options.masks, {.default_fps = options.default_fps});
+  Result<Video> masks = open_video(options.masks, {.default_fps = video.fps()});
   if (!masks) return masks.failure();
-  if (masks->width() != video->width() || masks->height() != video->height()) {
+  if (masks->width() != video.width() || masks->height() != video.height()) {
     return error("{}: masks of {}x{} for pictures of {}x{}", options.masks, masks->width(), masks->height(),
-                 video->width(), video->height());
+                 video.width(), video.height());
   }
   const Result<int64_t> offset =
-      offset_to_frames(options.masks, "masks", masks->first_index(), masks->num_frames_hint(), *video);
+      offset_to_frames(options.masks, "masks", masks->first_index(), masks->num_frames_hint(), video);
   if (!offset) return offset.failure();
   return make_given_masks(options.masks, std::move(*masks), *offset, options.clean_up);
 }
 
+// Samples of the whole video, or of its beginning.
+Result<BackgroundSamples> sample(Video& video, std::optional<int64_t> end_ns, ProgressSink* progress) {
+  if (Result<void> rewound = video.rewind(); !rewound) return rewound.failure();
+  return sample_background(video, end_ns, progress);
+}
+
 // A picture, or a clip of the empty scene.
-Result<BackgroundModel> model_from_plate(const std::string& plate, const std::string& input, Video& video,
-                                         ProgressSink* progress) {
+Result<BackgroundModel> model_from_plate(const std::string& plate, Video& video, ProgressSink* progress) {
   Result<Video> plates = open_video(plate);
   if (!plates) return plates.failure();
   if (plates->width() != video.width() || plates->height() != video.height()) {
     return error("{}: a background of {}x{} for pictures of {}x{} in {}", plate, plates->width(), plates->height(),
-                 video.width(), video.height(), input);
+                 video.width(), video.height(), video.name());
   }
   Result<std::optional<Frame>> first = plates->next();
   if (!first) return first.failure();
@@ -121,7 +116,7 @@ Result<BackgroundModel> model_from_plate(const std::string& plate, const std::st
   }
   BackgroundSamples samples;
   if (!video.is_live()) {
-    Result<BackgroundSamples> of_clip = sample_background(video, {}, progress);
+    Result<BackgroundSamples> of_clip = sample(video, {}, progress);
     if (!of_clip) return of_clip.failure();
     samples = std::move(*of_clip);
   }
@@ -139,16 +134,21 @@ Result<DepthFiles> open_depth(const SegmenterOptions& options, const Video& vide
   return depth;
 }
 
-Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, const SegmenterOptions& options,
+Result<std::unique_ptr<Segmenter>> make_background(Video& video, const SegmenterOptions& options,
                                                    ProgressSink* progress) {
-  Result<Video> opened = open_input(input, options);
-  if (!opened) return opened.failure();
-  Video& video = *opened;
-  const std::string background = options.background.empty() ? "auto" : options.background;
-  BackgroundSegmenterOptions made{
-      .name = "background " + background, .first_index = 0, .warnings = {}, .clean_up = options.clean_up, .depth = {}};
+  const std::string& input = video.name();
+  BackgroundOrigin origin = options.background.value_or(BackgroundOfClip{});
+  BackgroundSegmenterOptions made{.name = "background " + text_of(origin),
+                                  .first_index = 0,
+                                  .warnings = {},
+                                  .clean_up = options.clean_up,
+                                  .depth = {}};
+  if (video.is_live() && std::holds_alternative<BackgroundOfClip>(origin)) {
+    origin = BackgroundOnline{};
+    made.name = "background online";
+  }
   if (!options.depth.empty()) {
-    if (video.is_live() || background.starts_with("online")) {
+    if (std::holds_alternative<BackgroundOnline>(origin)) {
       return error("{}: depth joins a background that is learned beforehand, not an online one", input);
     }
     Result<DepthFiles> depth = open_depth(options, video);
@@ -159,101 +159,87 @@ Result<std::unique_ptr<Segmenter>> make_background(const std::string& input, con
     made.depth = JoinedDepth{std::move(*depth), learn_depth_background(*samples)};
   }
 
-  if (background == "online" || background == "online:knn" || (background == "auto" && video.is_live())) {
-    const bool knn = background == "online:knn";
-    if (!knn) made.name = "background online";
-    return make_online_segmenter(knn ? OnlineMixture::kKnn : OnlineMixture::kMog2, std::move(made));
+  if (const auto* online = std::get_if<BackgroundOnline>(&origin)) {
+    return make_online_segmenter(online->knn ? OnlineMixture::kKnn : OnlineMixture::kMog2, std::move(made));
   }
-  if (background == "auto") {
-    Result<BackgroundSamples> samples = sample_background(video, {}, progress);
-    if (!samples) return samples.failure();
-    BackgroundModel model = learn_background(*samples);
-    made.warnings = doubts(input, model, *samples, options.clean_up);
-    return make_background_segmenter(std::move(model), std::move(made));
-  }
-  static constexpr std::string_view kLeadIn = "lead-in:";
-  if (background.starts_with(kLeadIn)) {
-    const char* end = background.data() + background.size();
-    double seconds = 0;
-    const auto [stop, failure] = std::from_chars(background.data() + kLeadIn.size(), end, seconds);
-    if (failure != std::errc() || stop != end || !(seconds > 0) || seconds > 1e6) {
-      return error("background '{}': lead-in wants a positive number of seconds", background);
-    }
+  if (const auto* lead_in = std::get_if<BackgroundLeadIn>(&origin)) {
     if (video.is_live()) return error("{}: the background of a live camera is learned online", input);
-    Result<BackgroundSamples> samples = sample_background(video, std::llround(seconds * 1e9), progress);
+    Result<BackgroundSamples> samples = sample(video, std::llround(lead_in->seconds * 1e9), progress);
     if (!samples) return samples.failure();
-    if (!samples->next_index) return error("{}: ends within its lead-in of {} s", input, seconds);
+    if (!samples->next_index) return error("{}: ends within its lead-in of {} s", input, lead_in->seconds);
     made.first_index = *samples->next_index;
     return make_background_segmenter(learn_background(*samples), std::move(made));
   }
-  Result<BackgroundModel> model = model_from_plate(background, input, video, progress);
-  if (!model) return model.failure();
-  return make_background_segmenter(std::move(*model), std::move(made));
+  if (const auto* plate = std::get_if<BackgroundPlate>(&origin)) {
+    Result<BackgroundModel> model = model_from_plate(plate->path, video, progress);
+    if (!model) return model.failure();
+    return make_background_segmenter(std::move(*model), std::move(made));
+  }
+  Result<BackgroundSamples> samples = sample(video, {}, progress);
+  if (!samples) return samples.failure();
+  BackgroundModel model = learn_background(*samples);
+  made.warnings = doubts(input, model, *samples, options.clean_up);
+  return make_background_segmenter(std::move(model), std::move(made));
 }
 
-Result<std::unique_ptr<Segmenter>> make_learned(const std::string& input, const SegmenterOptions& options,
-                                                ProgressSink* progress) {
-  Result<Video> video = open_input(input, options);
-  if (!video) return video.failure();
+Result<std::unique_ptr<Segmenter>> make_learned(Video& video, const SegmenterOptions& options, ProgressSink* progress) {
   Result<PersonNetwork> network = PersonNetwork::load(options.networks);
   if (!network) return network.failure();
   Result<PersonDetector> detector = PersonDetector::load(options.networks);
   if (!detector) return detector.failure();
-  if (video->is_live()) return make_learned_segmenter(std::move(*network), std::move(*detector), options.clean_up);
-  Result<BackgroundSamples> samples = sample_background(*video, {}, progress);
+  if (video.is_live()) return make_learned_segmenter(std::move(*network), std::move(*detector), options.clean_up);
+  Result<BackgroundSamples> samples = sample(video, {}, progress);
   if (!samples) return samples.failure();
   return make_learned_segmenter(std::move(*network), std::move(*detector), options.clean_up, *samples);
 }
 
-Result<std::unique_ptr<Segmenter>> make_chroma(const std::string& input, const SegmenterOptions& options,
-                                               ProgressSink* progress) {
-  Result<Video> video = open_input(input, options);
-  if (!video) return video.failure();
-  if (video->is_live())
-    return error("{}: the screen is learned from the whole clip, which a live camera has not", input);
-  const Result<BackgroundSamples> samples = sample_background(*video, {}, progress);
+Result<std::unique_ptr<Segmenter>> make_chroma(Video& video, const SegmenterOptions& options, ProgressSink* progress) {
+  if (video.is_live()) {
+    return error("{}: the screen is learned from the whole clip, which a live camera has not", video.name());
+  }
+  const Result<BackgroundSamples> samples = sample(video, {}, progress);
   if (!samples) return samples.failure();
   Result<ScreenModel> model = learn_screen(*samples, options.key_colour, options.clean_up.garbage_mask);
-  if (!model) return error("{}: {}", input, model.error().message);
-  return make_chroma_segmenter(std::move(*model), input, options.clean_up);
+  if (!model) return error("{}: {}", video.name(), model.error().message);
+  return make_chroma_segmenter(std::move(*model), video.name(), options.clean_up);
 }
 
-Result<std::unique_ptr<Segmenter>> make_depth(const std::string& input, const SegmenterOptions& options,
+Result<std::unique_ptr<Segmenter>> make_depth(const Video& video, const SegmenterOptions& options,
                                               ProgressSink* progress) {
   if (options.depth.empty()) return error("segmenter 'depth': no depth images are given");
-  Result<Video> video = open_input(input, options);
-  if (!video) return video.failure();
-  Result<DepthFiles> depth = open_depth(options, *video);
+  Result<DepthFiles> depth = open_depth(options, video);
   if (!depth) return depth.failure();
   return make_depth_segmenter(std::move(*depth), options.depth_range, options.clean_up, progress);
 }
 
-Result<std::string> chosen_kind(const std::string& input, const SegmenterOptions& options) {
+Result<std::string> chosen_kind(Video& video, const SegmenterOptions& options) {
   if (options.kind != "auto") return options.kind;
   if (!options.masks.empty()) return std::string("masks");
-  if (options.background.empty()) {
-    Result<Video> video = open_input(input, options);
-    if (!video) return video.failure();
-    const Result<bool> masks = video->is_live() ? false : shows_masks(*video);
+  if (options.background) return std::string("background");
+  if (!video.is_live()) {
+    if (Result<void> rewound = video.rewind(); !rewound) return rewound.failure();
+    const Result<bool> masks = shows_masks(video);
     if (!masks) return masks.failure();
     if (*masks) return std::string("masks");
   }
-  return std::string(options.background.empty() && has_person_networks(options.networks) ? "learned" : "background");
+  return std::string(has_person_networks(options.networks) ? "learned" : "background");
 }
 
 }  // namespace
 
-Result<std::unique_ptr<Segmenter>> make_segmenter(const std::string& input, const SegmenterOptions& options,
+Result<std::unique_ptr<Segmenter>> make_segmenter(Video& video, const SegmenterOptions& options,
                                                   ProgressSink* progress) {
+  check(video.num_cameras() == 1, "make_segmenter: {} cameras", video.num_cameras());
   options.clean_up.check();
-  const Result<std::string> chosen = chosen_kind(input, options);
+  if (const auto fits = check_sizes(video, options.clean_up); !fits) return fits.failure();
+  const Result<std::string> chosen = chosen_kind(video, options);
   if (!chosen) return chosen.failure();
   const std::string& kind = *chosen;
-  if (kind == "masks") return make_masks(input, options);
-  if (kind == "learned") return make_learned(input, options, progress);
-  if (kind == "background") return make_background(input, options, progress);
-  if (kind == "chroma") return make_chroma(input, options, progress);
-  if (kind == "depth") return make_depth(input, options, progress);
+  if (kind == "masks") return make_masks(video, options);
+  if (kind == "learned") return make_learned(video, options, progress);
+  if (kind == "background") return make_background(video, options, progress);
+  if (kind == "chroma") return make_chroma(video, options, progress);
+  if (kind == "depth") return make_depth(video, options, progress);
   return error("segmenter '{}': unknown; known are auto, background, chroma, depth, learned, masks", kind);
 }
 

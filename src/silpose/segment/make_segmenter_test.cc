@@ -18,6 +18,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 // A clip of pictures at 10 frames per second: frames 0-9 empty, then the subject walks through, 5 pixels per frame.
+Result<std::unique_ptr<Segmenter>> make_of(const std::string& input, const SegmenterOptions& options = {},
+                                           double default_fps = 30, ProgressSink* progress = nullptr) {
+  Result<Video> video = open_video(input, {.default_fps = default_fps});
+  if (!video) return video.failure();
+  return make_segmenter(*video, options, progress);
+}
+
 class MakeSegmenterTest : public testing::Test {
  protected:
   static constexpr int kEmpty = 10, kFrames = 50;
@@ -60,7 +67,7 @@ class MakeSegmenterTest : public testing::Test {
   }
 
   [[nodiscard]] std::string failure(const SegmenterOptions& options) const {
-    const auto made = make_segmenter(at("clip"), options);
+    const auto made = make_of(at("clip"), options);
     return made ? "" : made.error().message;
   }
 
@@ -69,7 +76,7 @@ class MakeSegmenterTest : public testing::Test {
 };
 
 TEST_F(MakeSegmenterTest, BackgroundOfTheWholeClip) {
-  const auto segmenter = make_segmenter(at("clip")).value();
+  const auto segmenter = make_of(at("clip")).value();
   EXPECT_EQ(segmenter->name(), "background auto");
   EXPECT_EQ(segmenter->first_index(), 0);
   EXPECT_THAT(segmenter->warnings(), IsEmpty());
@@ -79,11 +86,12 @@ TEST_F(MakeSegmenterTest, BackgroundOfTheWholeClip) {
 // Each continues from its state as the one that gave it; one that learns online from seeing all.
 TEST_F(MakeSegmenterTest, GoesOnFromItsState) {
   write_masks("masks", kFrames);
-  const SegmenterOptions kinds[] = {
-      {.kind = "background"}, {.kind = "background", .background = "online"}, {.kind = "masks", .masks = at("masks")}};
+  const SegmenterOptions kinds[] = {{.kind = "background"},
+                                    {.kind = "background", .background = BackgroundOnline{}},
+                                    {.kind = "masks", .masks = at("masks")}};
   for (const SegmenterOptions& options : kinds) {
-    const auto whole = make_segmenter(at("clip"), options).value();
-    const auto second = make_segmenter(at("clip"), options).value();
+    const auto whole = make_of(at("clip"), options).value();
+    const auto second = make_of(at("clip"), options).value();
     for (int i = 0; i < kFrames; ++i) {
       if (i == 30) second->restore(whole->state());
       const ByteImage shown = i == 35 ? picture(0) : picture(i);  // lost for once: the area jumps
@@ -99,7 +107,7 @@ TEST_F(MakeSegmenterTest, GoesOnFromItsState) {
 }
 
 TEST_F(MakeSegmenterTest, BackgroundOfTheLeadIn) {
-  const auto segmenter = make_segmenter(at("clip"), {.background = "lead-in:1", .default_fps = 10}).value();
+  const auto segmenter = make_of(at("clip"), {.background = BackgroundLeadIn{1}}, 10).value();
   EXPECT_EQ(segmenter->first_index(), 10);
   expect_finds_subject(*segmenter, 10);
 }
@@ -109,15 +117,15 @@ TEST_F(MakeSegmenterTest, BackgroundFromAPlateOrAClipOfTheEmptyScene) {
   fs::create_directories(at("empty"));
   for (int i = 0; i < 8; ++i) write_image(at(fmt::format("empty/{}.png", i)), scene_.picture(-100, 80u + i)).value();
   for (const char* background : {"plate.png", "empty"}) {
-    const auto segmenter = make_segmenter(at("clip"), {.background = at(background)}).value();
+    const auto segmenter = make_of(at("clip"), {.background = BackgroundPlate{at(background)}}).value();
     expect_finds_subject(*segmenter, 0);
   }
 }
 
 TEST_F(MakeSegmenterTest, OnlineMixturesLearnFromTheEmptyStart) {
-  for (const char* background : {"online", "online:knn"}) {
-    const auto segmenter = make_segmenter(at("clip"), {.background = background}).value();
-    EXPECT_EQ(segmenter->name(), std::string("background ") + background);
+  for (const bool knn : {false, true}) {
+    const auto segmenter = make_of(at("clip"), {.background = BackgroundOnline{knn}}).value();
+    EXPECT_EQ(segmenter->name(), knn ? "background online:knn" : "background online");
     double worst = 1;
     for (int i = 0; i < kFrames; ++i) {
       const Observation result = segmenter->segment(picture(i), i).value();
@@ -127,13 +135,13 @@ TEST_F(MakeSegmenterTest, OnlineMixturesLearnFromTheEmptyStart) {
         worst = std::min(worst, intersection_over_union(result.mask, truth(i)));
       }
     }
-    EXPECT_GT(worst, 0.8) << background;
+    EXPECT_GT(worst, 0.8) << (knn ? "knn" : "mog2");
   }
 }
 
 TEST_F(MakeSegmenterTest, GivenMasksComeThroughUnchanged) {
   write_masks("masks", kFrames);
-  const auto segmenter = make_segmenter(at("clip"), {.masks = at("masks")}).value();
+  const auto segmenter = make_of(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->name(), "masks");
   for (int i : {12, 13, 30, 49}) {  // indices may skip
     EXPECT_EQ(segmenter->segment(picture(i), i).value().mask, truth(i)) << i;
@@ -142,14 +150,14 @@ TEST_F(MakeSegmenterTest, GivenMasksComeThroughUnchanged) {
 
 TEST_F(MakeSegmenterTest, MasksThatBeginLaterBelongToTheFramesOfTheirNumbers) {
   write_masks("masks", kFrames - 20, 20, 20);
-  const auto segmenter = make_segmenter(at("clip"), {.masks = at("masks")}).value();
+  const auto segmenter = make_of(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->first_index(), 20);
   EXPECT_EQ(segmenter->segment(picture(30), 30).value().mask, truth(30));
 }
 
 TEST_F(MakeSegmenterTest, AsManyMasksAsFramesBelongTogetherInOrder) {
   write_masks("masks", kFrames, 0, 1);  // numbered from 1, as some programs do
-  const auto segmenter = make_segmenter(at("clip"), {.masks = at("masks")}).value();
+  const auto segmenter = make_of(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->first_index(), 0);
   EXPECT_EQ(segmenter->segment(picture(30), 30).value().mask, truth(30));
 }
@@ -159,7 +167,7 @@ TEST_F(MakeSegmenterTest, MasksOfOtherFramesAreRefused) {
   EXPECT_THAT(failure({.masks = at("after")}), HasSubstr("after: 20 masks for 50 frames of"));
   write_masks("gap", kFrames);
   fs::remove(at("gap/031.png"));
-  const auto segmenter = make_segmenter(at("clip"), {.masks = at("gap")}).value();
+  const auto segmenter = make_of(at("clip"), {.masks = at("gap")}).value();
   EXPECT_TRUE(segmenter->segment(picture(30), 30).ok());
   EXPECT_THAT(segmenter->segment(picture(31), 31).error().message, HasSubstr("frame 31 has none"));
 }
@@ -167,36 +175,36 @@ TEST_F(MakeSegmenterTest, MasksOfOtherFramesAreRefused) {
 TEST_F(MakeSegmenterTest, LeadInCountsFromTheFirstPictureWhateverItsNumber) {
   fs::create_directories(at("later"));
   for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("later/{}.png", 200 + i)), picture(i)).value();
-  const auto segmenter = make_segmenter(at("later"), {.background = "lead-in:1", .default_fps = 10}).value();
+  const auto segmenter = make_of(at("later"), {.background = BackgroundLeadIn{1}}, 10).value();
   EXPECT_EQ(segmenter->first_index(), 210);
   EXPECT_GT(intersection_over_union(segmenter->segment(picture(30), 230).value().mask, truth(30)), 0.9);
 }
 
 TEST_F(MakeSegmenterTest, TheInputItselfMayBeTheMasks) {
   write_masks("masks", kFrames);
-  const auto segmenter = make_segmenter(at("masks"), {.kind = "masks"}).value();
+  const auto segmenter = make_of(at("masks"), {.kind = "masks"}).value();
   const ByteImage image = read_colour_image(at("masks/030.png")).value();
   EXPECT_EQ(segmenter->segment(image, 30).value().mask, truth(30));
 }
 
 TEST_F(MakeSegmenterTest, AClipOfMasksIsTakenForMasks) {
   write_masks("masks", kFrames);  // the first ones are all black
-  const auto segmenter = make_segmenter(at("masks")).value();
+  const auto segmenter = make_of(at("masks")).value();
   EXPECT_EQ(segmenter->name(), "masks");
   EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("masks: black and white only, so used as masks")));
   EXPECT_EQ(segmenter->segment(read_colour_image(at("masks/030.png")).value(), 30)->mask, truth(30));
   VideoWriter writer = create_video(at("masks.mp4"), truth(0).width(), truth(0).height(), 10).value();
   for (int i = 0; i < kFrames; ++i) writer.write(image_from_mask(truth(i))).value();
   writer.close().value();
-  EXPECT_EQ(make_segmenter(at("masks.mp4")).value()->name(), "masks");
+  EXPECT_EQ(make_of(at("masks.mp4")).value()->name(), "masks");
   // Not where something else is asked for, nor a film.
-  EXPECT_EQ(make_segmenter(at("masks"), {.kind = "background"}).value()->name(), "background auto");
-  EXPECT_EQ(make_segmenter(at("masks"), {.background = "online"}).value()->name(), "background online");
-  EXPECT_EQ(make_segmenter(at("clip")).value()->name(), "background auto");
+  EXPECT_EQ(make_of(at("masks"), {.kind = "background"}).value()->name(), "background auto");
+  EXPECT_EQ(make_of(at("masks"), {.background = BackgroundOnline{}}).value()->name(), "background online");
+  EXPECT_EQ(make_of(at("clip")).value()->name(), "background auto");
 }
 
 TEST_F(MakeSegmenterTest, PicturesThatAreNoMasksAreReported) {
-  const auto segmenter = make_segmenter(at("clip"), {.kind = "masks"}).value();
+  const auto segmenter = make_of(at("clip"), {.kind = "masks"}).value();
   EXPECT_THAT(segmenter->warnings(), IsEmpty());
   for (int i = 0; i < 3; ++i) (void)segmenter->segment(picture(i), i).value();
   EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("clip: not only black and white")));
@@ -207,14 +215,15 @@ TEST_F(MakeSegmenterTest, TooFewMasks) {
   EXPECT_THAT(failure({.masks = at("masks")}), HasSubstr("masks: 42 masks for 50 frames of"));
 
   write_masks("one_less", kFrames - 1);  // a container's count may be off by one: found when it happens
-  const auto segmenter = make_segmenter(at("clip"), {.masks = at("one_less")}).value();
+  const auto segmenter = make_of(at("clip"), {.masks = at("one_less")}).value();
   EXPECT_TRUE(segmenter->segment(picture(48), 48).ok());
   EXPECT_THAT(segmenter->segment(picture(49), 49).error().message, HasSubstr("49 masks, frame 49 has none"));
 }
 
 TEST_F(MakeSegmenterTest, OtherSizesAreRefused) {
   write_image(at("plate.png"), ByteImage(80, 60, 3)).value();
-  EXPECT_THAT(failure({.background = at("plate.png")}), HasSubstr("a background of 80x60 for pictures of 160x120"));
+  EXPECT_THAT(failure({.background = BackgroundPlate{at("plate.png")}}),
+              HasSubstr("a background of 80x60 for pictures of 160x120"));
   EXPECT_THAT(failure({.masks = at("plate.png")}), HasSubstr("masks of 80x60 for pictures of 160x120"));
   SegmenterOptions options;
   options.clean_up.garbage_mask = Mask(80, 60);
@@ -222,18 +231,16 @@ TEST_F(MakeSegmenterTest, OtherSizesAreRefused) {
   options.clean_up.garbage_mask.reset();
   options.clean_up.region = Box{160, 0, 20, 20};
   EXPECT_THAT(failure(options), HasSubstr("outside its pictures of 160x120"));
-  const auto segmenter = make_segmenter(at("clip")).value();
+  const auto segmenter = make_of(at("clip")).value();
   EXPECT_FALSE(segmenter->segment(ByteImage(80, 60, 3), 0).ok());
 }
 
 TEST_F(MakeSegmenterTest, SettingsThatCannotBe) {
   EXPECT_THAT(failure({.kind = "magic"}), HasSubstr("segmenter 'magic': unknown"));
-  EXPECT_THAT(failure({.background = at("none.png")}), HasSubstr("none.png: no such file"));
-  EXPECT_THAT(failure({.background = "lead-in:abc"}), HasSubstr("positive number of seconds"));
-  EXPECT_THAT(failure({.background = "lead-in:-1"}), HasSubstr("positive number of seconds"));
-  EXPECT_THAT(failure({.background = "lead-in:600"}), HasSubstr("ends within its lead-in"));
+  EXPECT_THAT(failure({.background = BackgroundPlate{at("none.png")}}), HasSubstr("none.png: no such file"));
+  EXPECT_THAT(failure({.background = BackgroundLeadIn{600}}), HasSubstr("ends within its lead-in"));
   EXPECT_THAT(failure({.masks = at("none")}), HasSubstr("none: no such file"));
-  EXPECT_THAT(make_segmenter(at("no_clip.mp4")).error().message, HasSubstr("no_clip.mp4: no such file"));
+  EXPECT_THAT(make_of(at("no_clip.mp4")).error().message, HasSubstr("no_clip.mp4: no such file"));
 }
 
 // The scene's subject in front of a green screen that covers all but the picture's left edge.
@@ -253,7 +260,7 @@ TEST_F(MakeSegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   fs::create_directories(at("green"));
   for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("green/{:02}.png", i)), keyed(i)).value();
   SegmenterOptions options{.kind = "chroma"};
-  auto segmenter = make_segmenter(at("green"), options).value();
+  auto segmenter = make_of(at("green"), options).value();
   EXPECT_THAT(segmenter->name(), HasSubstr("chroma #"));
   EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("8 % of the picture lies outside the screen")));
   for (const int i : {0, 20, 30}) {
@@ -266,7 +273,7 @@ TEST_F(MakeSegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   for (int y = 0; y < 120; ++y) {
     for (int x = 0; x < 100; ++x) options.clean_up.garbage_mask->set(x, y);
   }
-  segmenter = make_segmenter(at("green"), options).value();
+  segmenter = make_of(at("green"), options).value();
   EXPECT_THAT(segmenter->warnings(), IsEmpty());
   const Observation cut = segmenter->segment(keyed(45), 45).value();
   EXPECT_EQ(cut.box(), (Box{0, 0, 12, 120}));
@@ -310,7 +317,7 @@ TEST_F(MakeSegmenterTest, DepthJoinsTheColours) {
     write_depth_image(at(fmt::format("blind/{:03}.png", i)), depth(i, 25)).value();
   }
   const auto worst = [&](const SegmenterOptions& options, const std::string& clip) {
-    const auto segmenter = make_segmenter(at(clip), options).value();
+    const auto segmenter = make_of(at(clip), options).value();
     double least = 1;
     for (int i = 15; i < 45; i += 5) {
       const ByteImage image = clip == "same" ? camouflaged(i) : picture(i);
@@ -322,11 +329,12 @@ TEST_F(MakeSegmenterTest, DepthJoinsTheColours) {
   EXPECT_GT(worst({.kind = "background", .depth = at("depth")}, "same"), 0.95);
   EXPECT_LT(worst({.kind = "depth", .depth = at("blind")}, "clip"), 0.7) << "depth alone cannot distinguish them";
   EXPECT_GT(worst({.kind = "background", .depth = at("blind")}, "clip"), 0.95);
-  EXPECT_EQ(make_segmenter(at("same"), {.kind = "background", .depth = at("depth")}).value()->name(),
+  EXPECT_EQ(make_of(at("same"), {.kind = "background", .depth = at("depth")}).value()->name(),
             "background auto with depth");
-  EXPECT_THAT(
-      make_segmenter(at("clip"), {.kind = "background", .background = "online", .depth = at("depth")}).error().message,
-      HasSubstr("not an online one"));
+  EXPECT_THAT(make_of(at("clip"), {.kind = "background", .background = BackgroundOnline{}, .depth = at("depth")})
+                  .error()
+                  .message,
+              HasSubstr("not an online one"));
 }
 
 TEST_F(MakeSegmenterTest, DepthSegmentsByItself) {
@@ -345,7 +353,7 @@ TEST_F(MakeSegmenterTest, DepthSegmentsByItself) {
   SegmenterOptions options{.kind = "depth", .depth = at("depth")};
   for (const std::optional<DepthRange>& range : {std::optional<DepthRange>(), std::optional(DepthRange{2.5, 3.5})}) {
     options.depth_range = range;
-    const auto segmenter = make_segmenter(at("clip"), options).value();
+    const auto segmenter = make_of(at("clip"), options).value();
     EXPECT_EQ(segmenter->name(), range ? "depth 2.5 to 3.5 m" : "depth auto");
     EXPECT_THAT(segmenter->warnings(), IsEmpty());
     EXPECT_EQ(segmenter->first_index(), 0);  // as many as frames: in order, whatever they are numbered from
@@ -364,9 +372,9 @@ TEST_F(MakeSegmenterTest, DepthSegmentsByItself) {
     write_depth_image(at(fmt::format("small/{}.png", i)), DepthImage(80, 60, 1, 900)).value();
     write_depth_image(at(fmt::format("flat/{}.png", i)), DepthImage(160, 120, 1, 900)).value();
   }
-  EXPECT_THAT(make_segmenter(at("few"), {.kind = "depth", .depth = at("small")}).error().message,
+  EXPECT_THAT(make_of(at("few"), {.kind = "depth", .depth = at("small")}).error().message,
               HasSubstr("small/0.png: depth of 80x60 for pictures of 160x120"));
-  EXPECT_THAT(make_segmenter(at("few"), {.kind = "depth", .depth = at("flat")}).value()->warnings(),
+  EXPECT_THAT(make_of(at("few"), {.kind = "depth", .depth = at("flat")}).value()->warnings(),
               ElementsAre(HasSubstr("almost nothing is ever nearer than the background")));
 }
 
@@ -375,19 +383,19 @@ TEST_F(MakeSegmenterTest, WarnsOfASubjectWhoStays) {
   for (int i = 0; i < 12; ++i) {
     write_image(at(fmt::format("still/{:02}.png", i)), scene_.picture(60, static_cast<uint64_t>(i))).value();
   }
-  EXPECT_THAT(make_segmenter(at("still")).value()->warnings(), ElementsAre(HasSubstr("almost nothing moves")));
+  EXPECT_THAT(make_of(at("still")).value()->warnings(), ElementsAre(HasSubstr("almost nothing moves")));
   fs::create_directories(at("half"));
   for (int i = 0; i < 20; ++i) {
     write_image(at(fmt::format("half/{:02}.png", i)), scene_.picture(i < 8 ? 60 : 6 * i, 5u + i)).value();
   }
-  EXPECT_THAT(make_segmenter(at("half")).value()->warnings(), ElementsAre(HasSubstr("something stays")));
+  EXPECT_THAT(make_of(at("half")).value()->warnings(), ElementsAre(HasSubstr("something stays")));
 }
 
 TEST_F(MakeSegmenterTest, StopsWhenAsked) {
   struct Stop : ProgressSink {
     bool update(std::string_view, int64_t done, int64_t) override { return done < 5; }
   } stop;
-  EXPECT_THAT(make_segmenter(at("clip"), {}, &stop).error().message, HasSubstr("stopped"));
+  EXPECT_THAT(make_of(at("clip"), {}, 30, &stop).error().message, HasSubstr("stopped"));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "silpose/base/rng.h"
 #include "silpose/image/image_file.h"
 #include "silpose/image/mask.h"
-#include "silpose/image/video.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 

@@ -10,7 +10,7 @@
 #include "silpose/base/parallel.h"
 #include "silpose/geometry/calibration_file.h"
 #include "silpose/image/image_file.h"
-#include "silpose/image/video.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 namespace {

@@ -7,8 +7,8 @@
 #include "silpose/body/test_body.h"
 #include "silpose/geometry/calibration_file.h"
 #include "silpose/image/image_file.h"
-#include "silpose/image/video.h"
 #include "silpose/synth/test_scene.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 namespace {

@@ -14,8 +14,8 @@ namespace silpose {
 
 // Seconds that the parts of a step took, summed over layers; `start` is the search for a starting pose.
 struct StepSeconds {
-  double start = 0, segment = 0, propagate = 0, likelihood = 0, resample = 0;
-  static auto members(auto& s) { return std::tie(s.start, s.segment, s.propagate, s.likelihood, s.resample); }
+  double start = 0, propagate = 0, likelihood = 0, resample = 0;
+  static auto members(auto& s) { return std::tie(s.start, s.propagate, s.likelihood, s.resample); }
 };
 
 // What one step did.

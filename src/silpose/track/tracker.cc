@@ -10,7 +10,6 @@
 #include "silpose/filter/estimate.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/segment/background_segmenter.h"
 #include "silpose/shape/keypoint_axes.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/keypoint_sides.h"
@@ -233,7 +232,6 @@ struct Tracker::Impl {
   std::vector<BatchRenderer> seen_by, expected_by;  // [C] the whole mesh, and a coarse one
   std::unique_ptr<PoseFilter> filter;
   std::vector<std::shared_ptr<const Proposal>> for_start;  // [C]
-  std::vector<std::unique_ptr<Segmenter>> segmenters;      // online, one per camera; made when first needed
   std::vector<double> last_pose;
   bool started = false;
   int num_reinitialisations = 0;
@@ -291,22 +289,6 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
   ++t.steps;
   t.last_time_ns = time_ns;
   if (seen) t.last_seen_ns = time_ns;
-  return report;
-}
-
-StepReport Tracker::step(const Frame& frame) {
-  Impl& t = *impl_;
-  check(frame.images.size() == t.options.cameras.size(), "Tracker: {} images for {} cameras", frame.images.size(),
-        t.options.cameras.size());
-  const Stopwatch stopwatch;
-  std::vector<Observation> observations;
-  for (size_t c = 0; c < frame.images.size(); ++c) {
-    if (t.segmenters.size() <= c) t.segmenters.push_back(make_online_segmenter(OnlineMixture::kMog2, {}));
-    observations.push_back(t.segmenters[c]->segment(frame.images[c], frame.index).value());
-  }
-  const double segmenting = stopwatch.seconds();
-  StepReport report = step(observations, frame.index, frame.time_ns);
-  report.seconds.segment = segmenting;
   return report;
 }
 

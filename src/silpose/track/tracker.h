@@ -15,7 +15,6 @@
 #include <string_view>
 
 #include "silpose/filter/state_batch.h"
-#include "silpose/image/frame.h"
 #include "silpose/image/mask.h"
 #include "silpose/image/observation.h"
 #include "silpose/track/step_report.h"
@@ -34,10 +33,6 @@ class Tracker {
   // Tracks one instant from masks. Shapes: one observation per camera. Times must grow.
   StepReport step(std::span<const Observation> observations, int64_t frame_idx, int64_t time_ns);
 
-  // The same from pictures: segmented with an online background model, one per camera, that the tracker keeps.
-  // Errors: throws std::runtime_error where an image has another size than the first.
-  StepReport step(const Frame& frame);
-
   // Silhouettes of the estimate, extrapolated at its velocity by `dt_s`, on a coarse mesh: [C]. Empty before the start
   // and while it coasts.
   [[nodiscard]] std::vector<Mask> expected(double dt_s) const;
@@ -52,7 +47,7 @@ class Tracker {
   [[nodiscard]] std::vector<double> noise() const;
 
   // State from which another tracker with the same options continues exactly as this one would: the same reports, bit
-  // for bit, from the same program. What step(frame) learned of the background is not in it.
+  // for bit, from the same program.
   // Errors: restore() throws std::invalid_argument for what is no such state.
   [[nodiscard]] std::string state() const;
   void restore(std::string_view state);

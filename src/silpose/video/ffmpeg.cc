@@ -1,4 +1,4 @@
-#include "silpose/image/ffmpeg.h"
+#include "silpose/video/ffmpeg.h"
 
 #include <array>
 #include <cstdarg>

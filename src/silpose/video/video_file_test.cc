@@ -1,5 +1,5 @@
 // Clips as phones, camcorders and editors make them.
-#include "silpose/image/video_file.h"
+#include "silpose/video/video_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "silpose/image/clip_for_test.h"
 #include "silpose/image/image_file.h"
-#include "silpose/image/video.h"
+#include "silpose/video/clip_for_test.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 namespace {

@@ -8,8 +8,8 @@
 #include <optional>
 
 #include "silpose/base/result.h"
-#include "silpose/image/ffmpeg.h"
-#include "silpose/image/tone_map.h"
+#include "silpose/video/ffmpeg.h"
+#include "silpose/video/tone_map.h"
 
 namespace silpose {
 

@@ -12,6 +12,7 @@
 
 #include "silpose/base/result.h"
 #include "silpose/image/frame.h"
+#include "silpose/image/frame_source.h"
 
 namespace silpose {
 
@@ -54,8 +55,12 @@ class Video {
   // line each.
   [[nodiscard]] std::vector<std::string> warnings() const;
 
-  // Back to the first frame. Errors: a live camera; the input vanished.
+  // Back to the first frame. Errors: a live camera of which a frame was read; the input vanished.
   Result<void> rewind();
+
+  // The frames of one camera alone, from the same source: reading either moves both. REQUIRES: rewind() before the
+  // first frame of it, and again before the next frame of this one.
+  [[nodiscard]] Video alone(int camera) const;
 
   // Range-for over the frames left. Errors: throws std::runtime_error where next() would return an error.
   class Iterator {
@@ -77,11 +82,15 @@ class Video {
   Iterator end() { return {}; }
 
  private:
-  friend Result<Video> open_video(const std::vector<std::string>&, const VideoOptions&);
+  friend Result<Video> join_sources(std::vector<std::unique_ptr<FrameSource>>, const VideoOptions&);
   struct Impl;
   explicit Video(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+// The frames of sources in step, one per camera. Errors: those of the sources; no frame in one; rates that differ by
+// more than 10 %.
+Result<Video> join_sources(std::vector<std::unique_ptr<FrameSource>> sources, const VideoOptions& options = {});
 
 // Opens a file, a directory of pictures, a printf pattern ("img-%06d.png") or "camera:N".
 // A file's frames are as a player shows them: turned upright, of square pixels, each at the time its container says,

@@ -2,8 +2,8 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
-#include "silpose/image/ffmpeg.h"
-#include "silpose/image/video.h"
+#include "silpose/video/ffmpeg.h"
+#include "silpose/video/video.h"
 
 extern "C" {
 #include <libavutil/opt.h>

@@ -1,4 +1,4 @@
-#include "silpose/image/video.h"
+#include "silpose/video/video.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "silpose/image/image_file.h"
+#include "silpose/image/memory_source.h"
 
 namespace silpose {
 namespace {
@@ -311,6 +312,65 @@ TEST_F(VideoTest, OnePictureIsAVideoOfOneFrame) {
   Video video = open_video(at("one.png")).value();
   EXPECT_EQ(video.next().value()->images[0], picture(3));
   EXPECT_FALSE(video.next().value().has_value());
+}
+
+// Grey images; counts how often it went back to the first.
+class CountedSource : public MemorySource {
+ public:
+  CountedSource(int num_frames, uint8_t grey, int& num_rewinds)
+      : MemorySource(std::vector<ByteImage>(static_cast<size_t>(num_frames), ByteImage(4, 3, 3, grey)), 30),
+        num_rewinds_(num_rewinds) {}
+  Result<void> rewind() override {
+    ++num_rewinds_;
+    return MemorySource::rewind();
+  }
+
+ private:
+  int& num_rewinds_;
+};
+
+Video two_cameras(int& first_rewinds, int& second_rewinds) {
+  std::vector<std::unique_ptr<FrameSource>> sources;
+  sources.push_back(std::make_unique<CountedSource>(5, 10, first_rewinds));
+  sources.push_back(std::make_unique<CountedSource>(4, 20, second_rewinds));
+  return join_sources(std::move(sources)).value();
+}
+
+TEST(JoinedSources, AreGivenInStepAsFarAsTheShortest) {
+  int first = 0, second = 0;
+  Video video = two_cameras(first, second);
+  EXPECT_EQ(video.num_cameras(), 2);
+  EXPECT_EQ(video.num_frames_hint(), 4);
+  int count = 0;
+  for (const Frame& frame : video) {
+    EXPECT_EQ(frame.index, count++);
+    EXPECT_EQ(frame.images[0].at(0, 0), 10);
+    EXPECT_EQ(frame.images[1].at(0, 0), 20);
+  }
+  EXPECT_EQ(count, 4);
+}
+
+// A pass over one camera reads no other, and what was only read ahead is not read again.
+TEST(JoinedSources, OneOfThemAlone) {
+  int first = 0, second = 0;
+  Video video = two_cameras(first, second);
+  Video alone = video.alone(1);
+  EXPECT_EQ(alone.num_cameras(), 1);
+  EXPECT_EQ(alone.num_frames_hint(), 4);
+  alone.rewind().value();
+  EXPECT_EQ(second, 0);
+  int count = 0;
+  for (const Frame& frame : alone) {
+    EXPECT_EQ(frame.images[0].at(0, 0), 20);
+    ++count;
+  }
+  EXPECT_EQ(count, 4);
+  video.rewind().value();
+  EXPECT_EQ(first, 0);
+  EXPECT_EQ(second, 1);
+  count = 0;
+  for (const Frame& frame : video) EXPECT_EQ(frame.index, count++);
+  EXPECT_EQ(count, 4);
 }
 
 }  // namespace

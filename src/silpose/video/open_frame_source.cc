@@ -1,4 +1,4 @@
-#include "silpose/image/open_frame_source.h"
+#include "silpose/video/open_frame_source.h"
 
 #include <algorithm>
 #include <charconv>
@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "silpose/image/ffmpeg.h"
 #include "silpose/image/image_file.h"
 #include "silpose/image/picture_list.h"
-#include "silpose/image/video_file.h"
+#include "silpose/video/ffmpeg.h"
+#include "silpose/video/video_file.h"
 
 namespace silpose {
 namespace {
@@ -29,6 +29,7 @@ class LiveCamera : public FrameSource {
     return {};
   }
 
+  [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] double fps() const override {
     const double rate = capture_.get(cv::CAP_PROP_FPS);
     return rate > 0 && rate <= 1000 ? rate : 0;
@@ -56,9 +57,13 @@ class LiveCamera : public FrameSource {
 
 class PictureSource : public FrameSource {
  public:
-  PictureSource(PictureList pictures, std::optional<double> focal_mm35)
-      : paths_(std::move(pictures.paths)), numbers_(std::move(pictures.numbers)), focal_mm35_(focal_mm35) {}
+  PictureSource(std::string name, PictureList pictures, std::optional<double> focal_mm35)
+      : name_(std::move(name)),
+        paths_(std::move(pictures.paths)),
+        numbers_(std::move(pictures.numbers)),
+        focal_mm35_(focal_mm35) {}
 
+  [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] std::span<const int64_t> numbers() const override { return numbers_; }
   [[nodiscard]] int64_t num_frames_hint() const override { return static_cast<int64_t>(paths_.size()); }
   [[nodiscard]] std::optional<double> focal_mm35() const override { return focal_mm35_; }
@@ -74,6 +79,7 @@ class PictureSource : public FrameSource {
   }
 
  private:
+  std::string name_;
   std::vector<fs::path> paths_;
   std::vector<int64_t> numbers_;
   std::optional<double> focal_mm35_;  // of the first picture
@@ -106,7 +112,7 @@ Result<std::unique_ptr<FrameSource>> open_pictures(const std::string& input) {
   Result<PictureList> pictures = list_pictures(input);
   if (!pictures) return pictures.failure();
   const std::optional<double> focal_mm35 = focal_mm35_of_jpeg(pictures->paths.front());
-  return std::unique_ptr<FrameSource>(std::make_unique<PictureSource>(std::move(*pictures), focal_mm35));
+  return std::unique_ptr<FrameSource>(std::make_unique<PictureSource>(input, std::move(*pictures), focal_mm35));
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// The FrameSource that an input asks for: a video file, picture files or a live camera ("camera:N"). Used by Video; not
-// for use elsewhere.
+// The FrameSource of an input's name: a video file, image files or a live camera ("camera:N").
 // Threads: a function without state.
 #pragma once
 

@@ -1,4 +1,4 @@
-#include "silpose/image/video_file.h"
+#include "silpose/video/video_file.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <string_view>
 #include <utility>
 
-#include "silpose/image/ffmpeg.h"
-#include "silpose/image/pixel_converter.h"
-#include "silpose/image/shown_picture.h"
+#include "silpose/video/ffmpeg.h"
+#include "silpose/video/pixel_converter.h"
+#include "silpose/video/shown_picture.h"
 
 extern "C" {
 #include <libavutil/display.h>
@@ -58,6 +58,7 @@ class VideoFile : public FrameSource {
     return open();
   }
 
+  [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] double fps() const override { return fps_; }
   [[nodiscard]] bool has_times() const override { return first_pts_.has_value(); }
   [[nodiscard]] int64_t num_frames_hint() const override {

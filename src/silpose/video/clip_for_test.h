@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "silpose/image/ffmpeg.h"
 #include "silpose/image/image.h"
+#include "silpose/video/ffmpeg.h"
 
 extern "C" {
 #include <libavutil/pixdesc.h>

@@ -1,4 +1,4 @@
-#include "silpose/image/tone_map.h"
+#include "silpose/video/tone_map.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +8,8 @@
 #include <filesystem>
 
 #include "silpose/base/rng.h"
-#include "silpose/image/clip_for_test.h"
-#include "silpose/image/video.h"
+#include "silpose/video/clip_for_test.h"
+#include "silpose/video/video.h"
 
 namespace silpose {
 namespace {

@@ -1,4 +1,4 @@
-#include "silpose/image/shown_picture.h"
+#include "silpose/video/shown_picture.h"
 
 #include <cmath>
 #include <cstdlib>

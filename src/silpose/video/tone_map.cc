@@ -1,4 +1,4 @@
-#include "silpose/image/tone_map.h"
+#include "silpose/video/tone_map.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "silpose/image/pixel_converter.h"
+#include "silpose/video/pixel_converter.h"
 
 #include <cstdint>
 #include <span>

@@ -1,4 +1,4 @@
-#include "silpose/image/video.h"
+#include "silpose/video/video.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +7,16 @@
 
 #include "silpose/base/clock.h"
 #include "silpose/image/frame_source.h"
-#include "silpose/image/open_frame_source.h"
+#include "silpose/video/open_frame_source.h"
 
 namespace silpose {
 
 struct Video::Impl {
+  // A source, and its next picture where it was read ahead: to know its size and its time. Shared by this video and
+  // those of this camera alone.
   struct Camera {
-    std::string input;
     std::unique_ptr<FrameSource> source;
-    std::optional<Picture> picture;  // the next one, where it is read already: to know its size and its time
+    std::optional<Picture> picture;
     int width = 0, height = 0;
     int64_t num_read = 0;
 
@@ -27,8 +28,15 @@ struct Video::Impl {
       num_read += picture ? 1 : 0;
       return picture.has_value();
     }
+    // Nothing to do where the first picture was only read ahead: a file need not be opened again.
+    Result<void> rewind() {
+      if (num_read == 1 && picture) return {};
+      picture.reset();
+      num_read = 0;
+      return source->rewind();
+    }
   };
-  std::vector<Camera> cameras;
+  std::vector<std::shared_ptr<Camera>> cameras;
   std::string name;
   double fps = 0;
   bool fps_assumed = false, live = false, ended = false, truncated = false;
@@ -36,32 +44,30 @@ struct Video::Impl {
   std::vector<int64_t> numbers;  // of the frames; empty: counted from 0
   Stopwatch since_start;         // the time of live pictures
 
-  static Result<Camera> open_camera(const std::string& input) {
-    auto source = open_frame_source(input);
-    if (!source) return source.failure();
-    Camera camera{.input = input, .source = std::move(*source), .picture = {}};
-    const Result<bool> first = camera.read();
+  static Result<std::shared_ptr<Camera>> begin(std::unique_ptr<FrameSource> source) {
+    auto camera = std::make_shared<Camera>(Camera{.source = std::move(source), .picture = {}});
+    const Result<bool> first = camera->read();
     if (!first) return first.failure();
-    if (!*first) return error("{}: not a video, or no frame in it can be decoded", input);
-    camera.width = camera.picture->image.width();
-    camera.height = camera.picture->image.height();
+    if (!*first) return error("{}: not a video, or no frame in it can be decoded", camera->source->name());
+    camera->width = camera->picture->image.width();
+    camera->height = camera->picture->image.height();
     return camera;
   }
 
   // Reads what belongs together: cameras whose picture is older than another's advance to their next, so that a picture
   // that one of them dropped is left out for all. False: one of them has ended.
   Result<bool> read_instant() {
-    for (Camera& camera : cameras) {
-      if (camera.picture) continue;
-      const Result<bool> read = camera.read();
-      if (!read || !*read) return end_with(camera, read);
+    for (const auto& camera : cameras) {
+      if (camera->picture) continue;
+      const Result<bool> read = camera->read();
+      if (!read || !*read) return end_with(*camera, read);
     }
     const auto half_interval = static_cast<int64_t>(0.5e9 / fps);
     for (size_t i = 0; i < cameras.size();) {
-      Camera& camera = cameras[i++];
-      const auto is_after = [&](const Camera& other) {
-        return other.picture->time_ns && camera.picture->time_ns &&
-               *other.picture->time_ns - *camera.picture->time_ns > half_interval;
+      Camera& camera = *cameras[i++];
+      const auto is_after = [&](const std::shared_ptr<Camera>& other) {
+        return other->picture->time_ns && camera.picture->time_ns &&
+               *other->picture->time_ns - *camera.picture->time_ns > half_interval;
       };
       if (std::ranges::none_of(cameras, is_after)) continue;
       const Result<bool> read = camera.read();
@@ -91,10 +97,10 @@ struct Video::Impl {
 
   // Numbers that all cameras' pictures share, as far as the shortest goes.
   void take_numbers() {
-    const std::span<const int64_t> first = cameras[0].source->numbers();
+    const std::span<const int64_t> first = cameras[0]->source->numbers();
     numbers.assign(first.begin(), first.end());
-    for (const Camera& camera : cameras) {
-      const std::span<const int64_t> other = camera.source->numbers();
+    for (const auto& camera : cameras) {
+      const std::span<const int64_t> other = camera->source->numbers();
       numbers.resize(std::min(numbers.size(), other.size()));
       if (!std::equal(numbers.begin(), numbers.end(), other.begin())) numbers.clear();
     }
@@ -110,29 +116,29 @@ Video& Video::operator=(Video&&) noexcept = default;
 Video::~Video() = default;
 
 int Video::num_cameras() const { return static_cast<int>(impl_->cameras.size()); }
-int Video::width(int camera) const { return impl_->cameras.at(static_cast<size_t>(camera)).width; }
-int Video::height(int camera) const { return impl_->cameras.at(static_cast<size_t>(camera)).height; }
+int Video::width(int camera) const { return impl_->cameras.at(static_cast<size_t>(camera))->width; }
+int Video::height(int camera) const { return impl_->cameras.at(static_cast<size_t>(camera))->height; }
 double Video::fps() const { return impl_->fps; }
 bool Video::fps_assumed() const { return impl_->fps_assumed; }
 bool Video::is_live() const { return impl_->live; }
 int64_t Video::num_frames_hint() const { return impl_->hint; }
 int64_t Video::first_index() const { return impl_->index_of(0); }
 int64_t Video::own_index(int camera) const {
-  const Impl::Camera& asked = impl_->cameras.at(static_cast<size_t>(camera));
+  const Impl::Camera& asked = *impl_->cameras.at(static_cast<size_t>(camera));
   const std::span<const int64_t> numbers = asked.source->numbers();
   const int64_t ordinal = std::max<int64_t>(0, asked.num_read - 1);
   return numbers.empty() ? ordinal : numbers[static_cast<size_t>(ordinal)];
 }
 const std::string& Video::name() const { return impl_->name; }
 std::optional<double> Video::focal_mm35(int camera) const {
-  return impl_->cameras.at(static_cast<size_t>(camera)).source->focal_mm35();
+  return impl_->cameras.at(static_cast<size_t>(camera))->source->focal_mm35();
 }
 bool Video::truncated() const { return impl_->truncated; }
 
 std::vector<std::string> Video::warnings() const {
   std::vector<std::string> all;
-  for (const Impl::Camera& camera : impl_->cameras) {
-    const std::vector<std::string> own = camera.source->warnings();
+  for (const auto& camera : impl_->cameras) {
+    const std::vector<std::string> own = camera->source->warnings();
     all.insert(all.end(), own.begin(), own.end());
   }
   if (impl_->num_mistimed > 1 && 100 * impl_->num_mistimed > impl_->num_given) {
@@ -150,16 +156,16 @@ Result<std::optional<Frame>> Video::next() {
   const Result<bool> read = impl.read_instant();
   if (!read) return read.failure();
   if (!*read) return std::optional<Frame>();
-  const int64_t index = impl.index_of(impl.cameras[0].num_read - 1);
-  Frame frame{.index = index, .time_ns = impl.time_of(impl.cameras[0], index), .images = {}};
-  for (Impl::Camera& camera : impl.cameras) {
-    ByteImage& image = camera.picture->image;
-    if (image.width() != camera.width || image.height() != camera.height) {
-      return error("{}: frame {} is {}x{}, those before it {}x{}", camera.input, frame.index, image.width(),
-                   image.height(), camera.width, camera.height);
+  const int64_t index = impl.index_of(impl.cameras[0]->num_read - 1);
+  Frame frame{.index = index, .time_ns = impl.time_of(*impl.cameras[0], index), .images = {}};
+  for (const auto& camera : impl.cameras) {
+    ByteImage& image = camera->picture->image;
+    if (image.width() != camera->width || image.height() != camera->height) {
+      return error("{}: frame {} is {}x{}, those before it {}x{}", camera->source->name(), frame.index, image.width(),
+                   image.height(), camera->width, camera->height);
     }
     frame.images.push_back(std::move(image));
-    camera.picture.reset();
+    camera->picture.reset();
   }
   impl.last_ns = frame.time_ns;
   ++impl.num_given;
@@ -167,38 +173,61 @@ Result<std::optional<Frame>> Video::next() {
 }
 
 Result<void> Video::rewind() {
-  for (Impl::Camera& camera : impl_->cameras) {
-    camera.picture.reset();
-    camera.num_read = 0;
-    if (Result<void> rewound = camera.source->rewind(); !rewound) return rewound;
+  for (const auto& camera : impl_->cameras) {
+    if (Result<void> rewound = camera->rewind(); !rewound) return rewound;
   }
   impl_->num_given = impl_->last_ns = impl_->num_mistimed = 0;
   impl_->ended = impl_->truncated = false;
   return {};
 }
 
-Result<Video> open_video(const std::vector<std::string>& inputs, const VideoOptions& options) {
-  check(!inputs.empty(), "open_video: no input");
-  check(options.default_fps > 0, "open_video: default_fps is {}", options.default_fps);
+Video Video::alone(int camera) const {
+  auto impl = std::make_unique<Impl>();
+  impl->cameras = {impl_->cameras.at(static_cast<size_t>(camera))};
+  const FrameSource& source = *impl->cameras[0]->source;
+  impl->name = source.name();
+  impl->fps = source.fps() > 0 ? source.fps() : impl_->fps;
+  impl->fps_assumed = source.fps() == 0 && impl_->fps_assumed;
+  impl->live = source.is_live();
+  impl->hint = source.num_frames_hint();
+  impl->take_numbers();
+  return Video(std::move(impl));
+}
+
+Result<Video> join_sources(std::vector<std::unique_ptr<FrameSource>> sources, const VideoOptions& options) {
+  check(!sources.empty(), "join_sources: no source");
+  check(options.default_fps > 0, "join_sources: default_fps is {}", options.default_fps);
   auto impl = std::make_unique<Video::Impl>();
-  for (const std::string& input : inputs) {
-    auto camera = Video::Impl::open_camera(input);
-    if (!camera) return camera.failure();
-    const double rate = camera->source->fps();
+  for (std::unique_ptr<FrameSource>& source : sources) {
+    auto begun = Video::Impl::begin(std::move(source));
+    if (!begun) return begun.failure();
+    const FrameSource& begun_source = *(*begun)->source;
+    const double rate = begun_source.fps();
     if (rate > 0 && impl->fps > 0 && std::abs(rate - impl->fps) > 0.1 * impl->fps) {
-      return error("{}: {:.3f} frames per second, the inputs before it {:.3f}", input, rate, impl->fps);
+      return error("{}: {:.3f} frames per second, the inputs before it {:.3f}", begun_source.name(), rate, impl->fps);
     }
     if (impl->fps == 0) impl->fps = rate;
-    impl->live = impl->live || camera->source->is_live();
-    const int64_t hint = camera->source->num_frames_hint();
+    impl->live = impl->live || begun_source.is_live();
+    const int64_t hint = begun_source.num_frames_hint();
     impl->hint = impl->hint == 0 ? hint : std::min(impl->hint, hint);
-    impl->name += (impl->name.empty() ? "" : " ") + input;
-    impl->cameras.push_back(std::move(*camera));
+    impl->name += (impl->name.empty() ? "" : " ") + begun_source.name();
+    impl->cameras.push_back(std::move(*begun));
   }
   impl->take_numbers();
   impl->fps_assumed = impl->fps == 0;
   if (impl->fps_assumed) impl->fps = options.default_fps;
   return Video(std::move(impl));
+}
+
+Result<Video> open_video(const std::vector<std::string>& inputs, const VideoOptions& options) {
+  check(!inputs.empty(), "open_video: no input");
+  std::vector<std::unique_ptr<FrameSource>> sources;
+  for (const std::string& input : inputs) {
+    auto source = open_frame_source(input);
+    if (!source) return source.failure();
+    sources.push_back(std::move(*source));
+  }
+  return join_sources(std::move(sources), options);
 }
 
 Result<Video> open_video(const std::string& input, const VideoOptions& options) {
