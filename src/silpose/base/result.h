@@ -26,8 +26,8 @@ template <class... Args>
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : expected_(std::move(value)) {}                             // NOLINT: implicit by design
-  Result(tl::unexpected<Error> failure) : expected_(std::move(failure)) {}     // NOLINT: implicit by design
+  Result(T value) : expected_(std::move(value)) {}                                 // NOLINT: implicit by design
+  Result(tl::unexpected<Error> failure) : expected_(std::move(failure)) {}         // NOLINT: implicit by design
   Result(Error failure) : expected_(tl::unexpected<Error>(std::move(failure))) {}  // NOLINT: implicit by design
 
   [[nodiscard]] bool ok() const { return expected_.has_value(); }

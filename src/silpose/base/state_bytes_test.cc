@@ -78,7 +78,7 @@ TEST(StateBytes, WhateverTheCountsSayNoMemoryIsTakenForThem) {
       bytes[rng.index(bytes.size())] = static_cast<char>(rng.uniform() < 0.5 ? 0xff : rng.index(256));
     }
     const auto read = std::make_unique<State>();  // GCC 12 is wrong about one on the stack: maybe uninitialised
-    (void)from_bytes(bytes, *read);  // must not crash nor take all memory
+    (void)from_bytes(bytes, *read);               // must not crash nor take all memory
   }
 }
 

@@ -29,9 +29,9 @@ struct SkinWeights {
 
 // A coarser mesh of the same body: some of its vertices, joined by other faces.
 struct BodyLevel {
-  int asked_vertices = 0;           // what simplification was asked for
-  std::vector<uint32_t> vertices;   // [v] indices of the whole mesh's, ascending
-  std::vector<Face> faces;          // of these v
+  int asked_vertices = 0;              // what simplification was asked for
+  std::vector<uint32_t> vertices;      // [v] indices of the whole mesh's, ascending
+  std::vector<Face> faces;             // of these v
   double mean_iou = 0, worst_iou = 0;  // of its silhouettes with the whole body's (render/level_accuracy.h); 0: unknown
 };
 
@@ -71,10 +71,9 @@ void skin_vertices(const BodyModel& body, std::span<const double> pose, std::spa
 // translation root_ty; otherwise zeros. [D]
 [[nodiscard]] std::vector<double> standing_pose(const BodyModel& body);
 
-// A level of about `num_vertices` vertices: still closed, vertices kept where they were, outline kept (the human at 2,000
-// vertices: 0.6 mm off on average).
-// Source: quadric error metric (garland1997), by meshoptimizer.
-// Errors: throws std::invalid_argument when asked for fewer than 100.
+// A level of about `num_vertices` vertices: still closed, vertices kept where they were, outline kept (the human at
+// 2,000 vertices: 0.6 mm off on average). Source: quadric error metric (garland1997), by meshoptimizer. Errors: throws
+// std::invalid_argument when asked for fewer than 100.
 [[nodiscard]] BodyLevel simplify(const BodyModel& body, int num_vertices);
 
 // The level as a body of its own, without further levels. Stature and mass stay those of the whole mesh.

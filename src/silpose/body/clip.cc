@@ -26,8 +26,8 @@ std::vector<Rigid3> Clip::world_from_joint(size_t frame) const {
   std::vector<Rigid3> world_from_joint(num_joints());
   for (size_t j = 0; j < num_joints(); ++j) {
     const int parent = joints[j].parent_idx;
-    check(parent >= -1 && parent < static_cast<int>(j), "clip '{}': parent {} of joint {} does not come before it", name,
-          parent, j);
+    check(parent >= -1 && parent < static_cast<int>(j), "clip '{}': parent {} of joint {} does not come before it",
+          name, parent, j);
     const size_t at = frame * num_joints() + j;
     const Rigid3 parent_from_joint{rotations[at].toRotationMatrix(), translations[at]};
     world_from_joint[j] =
@@ -47,8 +47,8 @@ std::vector<Eigen::Vector3d> Clip::rest_positions() const {
   std::vector<Eigen::Vector3d> positions(num_joints());
   for (size_t j = 0; j < num_joints(); ++j) {
     const int parent = joints[j].parent_idx;
-    check(parent >= -1 && parent < static_cast<int>(j), "clip '{}': parent {} of joint {} does not come before it", name,
-          parent, j);
+    check(parent >= -1 && parent < static_cast<int>(j), "clip '{}': parent {} of joint {} does not come before it",
+          name, parent, j);
     positions[j] = joints[j].offset;
     if (parent >= 0) positions[j] += positions[static_cast<size_t>(parent)];
   }

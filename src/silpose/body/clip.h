@@ -17,18 +17,18 @@ namespace silpose {
 
 struct Clip {
   struct Joint {
-    std::string name;                                    // an end site's is its parent's with "_end"
-    int parent_idx = -1;                                 // -1: a root; always < own index
-    Eigen::Vector3d offset = Eigen::Vector3d::Zero();    // in the parent, rest pose, file units
-    bool is_end = false;                                 // an end site: has no children and never turns
+    std::string name;                                  // an end site's is its parent's with "_end"
+    int parent_idx = -1;                               // -1: a root; always < own index
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();  // in the parent, rest pose, file units
+    bool is_end = false;                               // an end site: has no children and never turns
   };
 
-  std::string name;                                      // of the file, for messages
-  std::vector<Joint> joints;                             // [J]
+  std::string name;           // of the file, for messages
+  std::vector<Joint> joints;  // [J]
   double fps = 30;
   // Row-major [T, J]: the joint's coordinate frame in its parent's (a root's: in the world).
-  std::vector<Eigen::Quaterniond> rotations;             // unit
-  std::vector<Eigen::Vector3d> translations;             // file units; mostly the joint's offset
+  std::vector<Eigen::Quaterniond> rotations;  // unit
+  std::vector<Eigen::Vector3d> translations;  // file units; mostly the joint's offset
 
   [[nodiscard]] size_t num_joints() const { return joints.size(); }
   [[nodiscard]] size_t num_frames() const { return joints.empty() ? 0 : rotations.size() / joints.size(); }

@@ -16,7 +16,7 @@ namespace silpose {
 
 // All 0 to 1; age from 2/3 (young adult) to 1 (old). Races are mixed equally.
 struct Sliders {
-  double gender = 0.5;       // 0 male, 1 female
+  double gender = 0.5;  // 0 male, 1 female
   double age = 2.0 / 3;
   double muscle = 0.5;
   double weight = 0.5;

@@ -57,8 +57,8 @@ TEST(HumanWeights, ReproduceTheSumsByJoint) {
   std::vector<double> sums(20, 0.0);
   for (size_t i = 0; i < skin.weight.size(); ++i) sums[skin.joint_idx[i]] += skin.weight[i];
   // Measured on an earlier release of the weights, before stray islands of at most 0.019 were cleaned out.
-  const std::vector<double> expected = {141.1, 376.9, 817.4, 4288.5, 47.2, 332.8, 234.4, 1071.4, 47.2, 332.8,
-                                        234.4, 1071.4, 56.8, 284.3, 251.6, 1599.5, 56.8, 284.3, 251.6, 1599.5};
+  const std::vector<double> expected = {141.1, 376.9,  817.4, 4288.5, 47.2,  332.8,  234.4, 1071.4, 47.2,  332.8,
+                                        234.4, 1071.4, 56.8,  284.3,  251.6, 1599.5, 56.8,  284.3,  251.6, 1599.5};
   EXPECT_THAT(sums, testing::Pointwise(testing::DoubleNear(4), expected));
   EXPECT_NEAR(std::accumulate(sums.begin(), sums.end(), 0.0), kNumBodyVertices, 0.01);
   for (uint32_t v = 0; v < kNumBodyVertices; ++v) EXPECT_LE(skin.row_start[v + 1] - skin.row_start[v], 7u);
@@ -114,16 +114,16 @@ TEST(Human, StandsStraightInTheZeroPose) {
   const std::vector<Rigid3> frames = body.skeleton.forward_kinematics(pose);
   const auto joint = [&](const char* name) { return frames[*body.skeleton.find_joint(name)].translation; };
   for (const std::string side : {"right_", "left_"}) {
-    for (const auto& [upper, lower] : {std::pair{"thigh", "shin"}, {"shin", "foot"}, {"upper_arm", "forearm"},
-                                       {"forearm", "hand"}}) {
+    for (const auto& [upper, lower] :
+         {std::pair{"thigh", "shin"}, {"shin", "foot"}, {"upper_arm", "forearm"}, {"forearm", "hand"}}) {
       const Eigen::Vector3d bone = joint((side + lower).c_str()) - joint((side + upper).c_str());
       EXPECT_LT(bone.normalized().y(), -0.999999) << side << upper;
     }
     const Eigen::Vector3d hip = joint((side + "thigh").c_str());
     EXPECT_NEAR(std::abs(hip.x()), 0.085, 0.001);
   }
-  // Bones keep the lengths of the rest pose: shoulder (-.1985, 1.4237, .0123), elbow (-.3772, 1.2137, .0266), in metres,
-  // by another program from the same landmarks.
+  // Bones keep the lengths of the rest pose: shoulder (-.1985, 1.4237, .0123), elbow (-.3772, 1.2137, .0266), in
+  // metres, by another program from the same landmarks.
   EXPECT_NEAR((joint("right_upper_arm") - joint("right_forearm")).norm(), 0.2761, 0.001);
   EXPECT_NEAR((joint("right_shin") - joint("right_foot")).norm(), 0.4270, 0.001);
   EXPECT_NEAR((joint("right_thigh") - joint("right_shin")).norm(), 0.4344, 0.001);
@@ -225,8 +225,8 @@ TEST(LevelOfDetail, KeepsTheExtentOfTheOutlineInEveryDirection) {
   const std::vector<Eigen::Vector3f> whole = skin_vertices(body, pose), few = skin_vertices(lod, pose);
   for (int degrees = 0; degrees < 360; degrees += 5) {
     const float a = static_cast<float>(to_radians(degrees));
-    for (const Eigen::Vector3f& direction : {Eigen::Vector3f(std::cos(a), std::sin(a), 0),
-                                             Eigen::Vector3f(0, std::cos(a), std::sin(a))}) {
+    for (const Eigen::Vector3f& direction :
+         {Eigen::Vector3f(std::cos(a), std::sin(a), 0), Eigen::Vector3f(0, std::cos(a), std::sin(a))}) {
       float extent = -9, extent_lod = -9;
       for (const Eigen::Vector3f& x : whole) extent = std::max(extent, direction.dot(x));
       for (const Eigen::Vector3f& x : few) extent_lod = std::max(extent_lod, direction.dot(x));
@@ -253,9 +253,7 @@ TEST(LevelOfDetail, IsTheBodysOwnWhereItHasIt) {
   EXPECT_EQ(level_of_detail(body, 600).rest.faces.size(), 100u);
 }
 
-TEST(LevelOfDetail, RefusesTooFew) {
-  EXPECT_THROW((void)level_of_detail(human("human"), 99), std::invalid_argument);
-}
+TEST(LevelOfDetail, RefusesTooFew) { EXPECT_THROW((void)level_of_detail(human("human"), 99), std::invalid_argument); }
 
 }  // namespace
 }  // namespace silpose

@@ -47,11 +47,11 @@ std::string sha256(std::string_view bytes) {
 
 // The bones of the default rig that carry the thesis' joints; all others belong to the nearest of these above them.
 std::map<std::string, int> joint_from_bone() {
-  std::map<std::string, int> map = {{"root", 0},   {"spine05", 0}, {"spine04", 1}, {"spine03", 1},
+  std::map<std::string, int> map = {{"root", 0},    {"spine05", 0}, {"spine04", 1}, {"spine03", 1},
                                     {"spine02", 2}, {"spine01", 2}, {"neck01", 3}};
   int joint = 4;
-  for (const char* part : {"pelvis", "upperleg01", "lowerleg01", "foot", "clavicle", "upperarm01", "lowerarm01",
-                           "wrist"}) {
+  for (const char* part :
+       {"pelvis", "upperleg01", "lowerleg01", "foot", "clavicle", "upperarm01", "lowerarm01", "wrist"}) {
     if (joint == 8) joint = 12;
     map[fmt::format("{}.R", part)] = joint;
     map[fmt::format("{}.L", part)] = joint + 4;

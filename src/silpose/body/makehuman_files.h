@@ -23,8 +23,8 @@ inline constexpr uint32_t kNumBodyVertices = 13380;
 inline constexpr uint32_t kNumMakeHumanVertices = 19158;
 
 struct MakeHumanMesh {
-  std::vector<Eigen::Vector3f> vertices;                  // [19158]
-  std::vector<Face> body_faces;                           // quads split along their shorter diagonal
+  std::vector<Eigen::Vector3f> vertices;                 // [19158]
+  std::vector<Face> body_faces;                          // quads split along their shorter diagonal
   std::map<std::string, std::array<uint32_t, 8>> cubes;  // group "joint-NAME" -> its vertices
 };
 

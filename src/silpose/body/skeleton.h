@@ -22,13 +22,13 @@ namespace silpose {
 // applied. Translations come before (outside) all rotations of their joint: those of a root without offset are its
 // world position.
 struct Dof {
-  std::string name;              // column without its unit: "right_thigh_rx", "root_tx"
+  std::string name;  // column without its unit: "right_thigh_rx", "root_tx"
   int joint_idx = 0;
   bool is_translation = false;
-  bool is_periodic = false;      // a full turn: limits are for NPSU only, values wrap
+  bool is_periodic = false;                         // a full turn: limits are for NPSU only, values wrap
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  // positive values turn by the right hand about it
-  double lower = 0, upper = 0;   // radians or metres
-  bool is_shape = false;         // a property of the body, the same in every pose of a clip (stretchable.h)
+  double lower = 0, upper = 0;                      // radians or metres
+  bool is_shape = false;  // a property of the body, the same in every pose of a clip (stretchable.h)
 
   [[nodiscard]] std::string column() const { return name + (is_translation ? "_m" : "_deg"); }
 };
@@ -38,7 +38,7 @@ struct Dof {
 
 struct Joint {
   std::string name;
-  int parent_idx = -1;                                       // -1: the root; always < own index
+  int parent_idx = -1;                                         // -1: the root; always < own index
   Eigen::Vector3d offset_in_parent = Eigen::Vector3d::Zero();  // metres, in the zero pose
   std::vector<int> dof_indices = {};                           // rotations in order of application, outermost first
 };
@@ -62,8 +62,8 @@ class Skeleton {
   void forward_kinematics(std::span<const double> pose, std::span<Rigid3> world_from_joint) const;
   [[nodiscard]] std::vector<Rigid3> forward_kinematics(std::span<const double> pose) const;
 
-  // The axis of every DOF in world coordinates [3, D]: what a translation moves along, what a rotation turns about (through
-  // the joint's centre). `world_from_joint` [J] comes from forward_kinematics.
+  // The axis of every DOF in world coordinates [3, D]: what a translation moves along, what a rotation turns about
+  // (through the joint's centre). `world_from_joint` [J] comes from forward_kinematics.
   [[nodiscard]] Eigen::Matrix3Xd dof_axes(std::span<const double> pose, std::span<const Rigid3> world_from_joint) const;
 
   // Brings a pose inside the limits: clamps, and wraps periodic DOF. Translations are left alone.

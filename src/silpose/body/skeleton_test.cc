@@ -16,10 +16,9 @@ using testing::ElementsAre;
 
 // A person 1.75 m tall, in round numbers, in the zero pose.
 std::vector<Eigen::Vector3d> round_joints() {
-  return {{0, 1, 0},      {0, 1.1, 0},    {0, 1.25, 0},   {0, 1.5, 0},      {-.1, .9, 0},      {-.1, .9, 0},
-          {-.1, .5, 0},   {-.1, .1, 0},   {.1, .9, 0},    {.1, .9, 0},      {.1, .5, 0},       {.1, .1, 0},
-          {-.05, 1.4, 0}, {-.2, 1.4, 0},  {-.2, 1.1, 0},  {-.2, .85, 0},    {.05, 1.4, 0},     {.2, 1.4, 0},
-          {.2, 1.1, 0},   {.2, .85, 0}};
+  return {{0, 1, 0},     {0, 1.1, 0},   {0, 1.25, 0},  {0, 1.5, 0},  {-.1, .9, 0}, {-.1, .9, 0},   {-.1, .5, 0},
+          {-.1, .1, 0},  {.1, .9, 0},   {.1, .9, 0},   {.1, .5, 0},  {.1, .1, 0},  {-.05, 1.4, 0}, {-.2, 1.4, 0},
+          {-.2, 1.1, 0}, {-.2, .85, 0}, {.05, 1.4, 0}, {.2, 1.4, 0}, {.2, 1.1, 0}, {.2, .85, 0}};
 }
 
 class HumanSkeleton : public testing::Test {
@@ -44,16 +43,16 @@ class HumanSkeleton : public testing::Test {
 TEST_F(HumanSkeleton, HasTheColumnsInOrder) {
   std::vector<std::string> columns;
   for (const Dof& dof : skeleton.dofs()) columns.push_back(dof.column());
-  EXPECT_THAT(columns,
-              ElementsAre("root_tx_m", "root_ty_m", "root_tz_m", "root_rx_deg", "root_ry_deg", "root_rz_deg",
-                          "abdomen_rx_deg", "thorax_rx_deg", "thorax_ry_deg", "thorax_rz_deg", "head_rx_deg",
-                          "head_ry_deg", "head_rz_deg", "right_thigh_rx_deg", "right_thigh_ry_deg",
-                          "right_thigh_rz_deg", "right_shin_rx_deg", "right_foot_rx_deg", "left_thigh_rx_deg",
-                          "left_thigh_ry_deg", "left_thigh_rz_deg", "left_shin_rx_deg", "left_foot_rx_deg",
-                          "right_upper_arm_rx_deg", "right_upper_arm_ry_deg", "right_upper_arm_rz_deg",
-                          "right_forearm_rx_deg", "right_forearm_ry_deg", "right_hand_rx_deg", "right_hand_rz_deg",
-                          "left_upper_arm_rx_deg", "left_upper_arm_ry_deg", "left_upper_arm_rz_deg",
-                          "left_forearm_rx_deg", "left_forearm_ry_deg", "left_hand_rx_deg", "left_hand_rz_deg"));
+  EXPECT_THAT(
+      columns,
+      ElementsAre("root_tx_m", "root_ty_m", "root_tz_m", "root_rx_deg", "root_ry_deg", "root_rz_deg", "abdomen_rx_deg",
+                  "thorax_rx_deg", "thorax_ry_deg", "thorax_rz_deg", "head_rx_deg", "head_ry_deg", "head_rz_deg",
+                  "right_thigh_rx_deg", "right_thigh_ry_deg", "right_thigh_rz_deg", "right_shin_rx_deg",
+                  "right_foot_rx_deg", "left_thigh_rx_deg", "left_thigh_ry_deg", "left_thigh_rz_deg",
+                  "left_shin_rx_deg", "left_foot_rx_deg", "right_upper_arm_rx_deg", "right_upper_arm_ry_deg",
+                  "right_upper_arm_rz_deg", "right_forearm_rx_deg", "right_forearm_ry_deg", "right_hand_rx_deg",
+                  "right_hand_rz_deg", "left_upper_arm_rx_deg", "left_upper_arm_ry_deg", "left_upper_arm_rz_deg",
+                  "left_forearm_rx_deg", "left_forearm_ry_deg", "left_hand_rx_deg", "left_hand_rz_deg"));
 }
 
 TEST_F(HumanSkeleton, HasTheJointsOfTheThesis) {
@@ -182,8 +181,8 @@ TEST(Skeleton, TurnsAboutAnyAxis) {
   const Skeleton skeleton("one", {{.name = "root", .dof_indices = {0}}},
                           {{.name = "root_r", .axis = axis, .lower = -1, .upper = 1}});
   const std::vector<double> pose = {0.7};
-  EXPECT_TRUE(skeleton.forward_kinematics(pose)[0].rotation.isApprox(
-      Eigen::AngleAxisd(0.7, axis).toRotationMatrix(), 1e-12));
+  EXPECT_TRUE(
+      skeleton.forward_kinematics(pose)[0].rotation.isApprox(Eigen::AngleAxisd(0.7, axis).toRotationMatrix(), 1e-12));
 }
 
 // A root with an offset whose rotations come first, whose translations are in another order than x, y, z, and one of

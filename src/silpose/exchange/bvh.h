@@ -16,8 +16,8 @@
 namespace silpose {
 
 // Any channel order, several roots, joint names with blanks, tabs; end sites become joints named "<parent>_end".
-// Errors: missing or empty file, not BVH, broken hierarchy, unknown channel, a value that is not a finite number, a line
-// with too few or too many values, other than the stated number of frames; names file and line.
+// Errors: missing or empty file, not BVH, broken hierarchy, unknown channel, a value that is not a finite number, a
+// line with too few or too many values, other than the stated number of frames; names file and line.
 Result<Clip> read_bvh(const std::filesystem::path& path);
 
 // Every joint turns by three channels (Z, X, Y), in degrees, curves without jumps (steady_angles.h); roots, and joints

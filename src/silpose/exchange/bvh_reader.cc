@@ -13,9 +13,9 @@
 namespace silpose {
 namespace {
 
-constexpr int kMaxChannels = 6;         // of one joint
-constexpr double kLargest = 1e9;                                // of any number in the file
-constexpr double kShortestFrame = 1e-5, kLongestFrame = 1e3;    // seconds
+constexpr int kMaxChannels = 6;                               // of one joint
+constexpr double kLargest = 1e9;                              // of any number in the file
+constexpr double kShortestFrame = 1e-5, kLongestFrame = 1e3;  // seconds
 constexpr int64_t kMaxJoints = 10'000;  // far more than any capture has; keeps a broken file from filling the memory
 
 enum class Channel { kXPosition, kYPosition, kZPosition, kXRotation, kYRotation, kZRotation };
@@ -158,7 +158,9 @@ class Reader {
         return wrong("ends inside joint '{}'", clip_.joints[open.back()].name);
       } else {
         return wrong("{} where {} should be", shown(word),
-                     !open.empty() ? "JOINT, End Site or }" : clip_.joints.empty() ? "ROOT" : "MOTION");
+                     !open.empty()          ? "JOINT, End Site or }"
+                     : clip_.joints.empty() ? "ROOT"
+                                            : "MOTION");
       }
     }
   }

@@ -51,8 +51,8 @@ TEST_F(Bvh, ReadsASmallFileByHand) {
   EXPECT_EQ(clip.fps, 120);
   ASSERT_EQ(clip.num_frames(), 2U);
   EXPECT_TRUE(clip.forward_kinematics(0)[2].isApprox(Vector3d(1, 5, 3)));
-  // Frame 1: the root's quarter turn about z lays the spine along -x; in the spine's frame Rx(90) Rz(90) takes the end's
-  // y to -x (by Rz) and leaves it there (Rx); the root's turn takes -x to -y.
+  // Frame 1: the root's quarter turn about z lays the spine along -x; in the spine's frame Rx(90) Rz(90) takes the
+  // end's y to -x (by Rz) and leaves it there (Rx); the root's turn takes -x to -y.
   const auto positions = clip.forward_kinematics(1);
   EXPECT_TRUE(positions[0].isApprox(Vector3d(10, -2, 3), 1e-12));
   EXPECT_TRUE(positions[1].isApprox(Vector3d(8, -2, 3), 1e-12));
@@ -61,18 +61,20 @@ TEST_F(Bvh, ReadsASmallFileByHand) {
 
 TEST_F(Bvh, KeepsTheOffsetWherePositionsAreNotUsed) {
   const auto text = [](const std::string& row) {
-    return "HIERARCHY\nROOT a\n{\nOFFSET 0 5 0\nCHANNELS 6 Xposition Yposition Zposition Xrotation Yrotation Zrotation\n"
+    return "HIERARCHY\nROOT a\n{\nOFFSET 0 5 0\nCHANNELS 6 Xposition Yposition Zposition Xrotation Yrotation "
+           "Zrotation\n"
            "JOINT b\n{\nOFFSET 0 2 0\nCHANNELS 6 Xposition Yposition Zposition Xrotation Yrotation Zrotation\n}\n}\n"
-           "MOTION\nFrames: 1\nFrame Time: 0.04\n" + row + "\n";
+           "MOTION\nFrames: 1\nFrame Time: 0.04\n" +
+           row + "\n";
   };
   EXPECT_TRUE(read(text("0 0 0 0 0 0 0 0 0 0 0 0")).value().forward_kinematics(0)[1].isApprox(Vector3d(0, 2, 0)));
   EXPECT_TRUE(read(text("1 1 1 0 0 0 0 3 0 0 0 0")).value().forward_kinematics(0)[1].isApprox(Vector3d(1, 4, 1)));
 }
 
 TEST_F(Bvh, ReadsWholeFrameRatesFromRoundedTimes) {
-  const std::vector<std::pair<std::string, double>> cases = {{"0.0083333", 120}, {"0.008333", 120}, {"0.0333333", 30},
-                                                             {"0.041667", 24},   {"0.016666", 60},  {"0.04", 25},
-                                                             {"0.033367", 1 / 0.033367}, {"0.008342", 1 / 0.008342}};
+  const std::vector<std::pair<std::string, double>> cases = {
+      {"0.0083333", 120}, {"0.008333", 120}, {"0.0333333", 30},          {"0.041667", 24},
+      {"0.016666", 60},   {"0.04", 25},      {"0.033367", 1 / 0.033367}, {"0.008342", 1 / 0.008342}};
   for (const auto& [time, fps] : cases) {
     std::string text = kSmall;
     text.replace(text.find(".0083333"), 8, time);
@@ -154,8 +156,13 @@ TEST_F(Bvh, CutAnywhereGivesAnErrorAndNoCrash) {
 }
 
 Dof rotation(const std::string& name, int joint, const Vector3d& axis) {
-  return {.name = name, .joint_idx = joint, .is_translation = false, .is_periodic = false, .axis = axis,
-          .lower = -kPi, .upper = kPi};
+  return {.name = name,
+          .joint_idx = joint,
+          .is_translation = false,
+          .is_periodic = false,
+          .axis = axis,
+          .lower = -kPi,
+          .upper = kPi};
 }
 
 // A trunk with two arms whose joints are not in depth-first order, as our human's do not.
@@ -168,8 +175,13 @@ Skeleton small_skeleton() {
   std::vector<Dof> dofs;
   dofs.reserve(13);
   for (int axis = 0; axis < 3; ++axis) {
-    dofs.push_back({.name = std::string("root_t") + "xyz"[axis], .joint_idx = 0, .is_translation = true,
-                    .is_periodic = false, .axis = Vector3d::Unit(axis), .lower = -5, .upper = 5});
+    dofs.push_back({.name = std::string("root_t") + "xyz"[axis],
+                    .joint_idx = 0,
+                    .is_translation = true,
+                    .is_periodic = false,
+                    .axis = Vector3d::Unit(axis),
+                    .lower = -5,
+                    .upper = 5});
   }
   const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
   dofs.push_back(rotation("root_ry", 0, y));

@@ -81,8 +81,8 @@ class Writer {
 
   const Clip& clip_;
   std::vector<std::vector<size_t>> children_;
-  std::vector<bool> moves_;            // has position channels
-  std::vector<size_t> order_;          // joints depth first, without end sites
+  std::vector<bool> moves_;    // has position channels
+  std::vector<size_t> order_;  // joints depth first, without end sites
   std::vector<SteadyAngles> angles_;
   std::string text_;
 };

@@ -38,7 +38,8 @@ void put_frame_and_time(std::string& text, int64_t frame, double time_s) {
 Result<double> pose_value(const CsvReader& csv, int column) {
   constexpr double kLargest = 1e6;  // metres, degrees
   const Result<double> value = csv.number(column);
-  if (value && std::abs(*value) > kLargest) return csv.wrong("{} is not within {} metres or degrees of zero", csv.text(column).substr(0, 40), kLargest);
+  if (value && std::abs(*value) > kLargest)
+    return csv.wrong("{} is not within {} metres or degrees of zero", csv.text(column).substr(0, 40), kLargest);
   return value;
 }
 

@@ -17,11 +17,11 @@ struct PoseTable {
   struct Row {
     int64_t frame = 0;
     double time_s = 0;
-    std::vector<double> values;           // [D] natural units (m, rad), or NPSU
+    std::vector<double> values;                             // [D] natural units (m, rad), or NPSU
     double visual_accuracy = 0, effective_sample_size = 0;  // written in a result only
   };
   std::vector<Row> rows;
-  bool has_scores = false;                // the two columns above are there
+  bool has_scores = false;  // the two columns above are there
 };
 
 enum class PoseUnits { kNatural, kNormalised };  // natural: metres and degrees in the file, radians in memory
@@ -38,9 +38,9 @@ struct JointTable {
     int64_t frame = 0;
     double time_s = 0;
     std::string joint;
-    Eigen::Vector3d x_in_world = Eigen::Vector3d::Zero();          // metres
-    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();               // first camera, the library's pixels; NaN: unseen
-    Eigen::Vector3d sd = Eigen::Vector3d::Zero();                  // metres, written in a result only
+    Eigen::Vector3d x_in_world = Eigen::Vector3d::Zero();  // metres
+    Eigen::Vector2d pixel = Eigen::Vector2d::Zero();       // first camera, the library's pixels; NaN: unseen
+    Eigen::Vector3d sd = Eigen::Vector3d::Zero();          // metres, written in a result only
   };
   std::vector<Row> rows;
   bool has_spread = false;

@@ -32,10 +32,20 @@ class Tables : public testing::Test {
 
 Skeleton two_dofs() {
   return Skeleton("two", {{"root", -1, {0, 0, 0}, {0}}, {"tip", 0, {0, 1, 0}, {1}}},
-                  {{.name = "root_tx", .joint_idx = 0, .is_translation = true, .is_periodic = false,
-                    .axis = Eigen::Vector3d::UnitX(), .lower = -1, .upper = 1},
-                   {.name = "tip_rz", .joint_idx = 1, .is_translation = false, .is_periodic = false,
-                    .axis = Eigen::Vector3d::UnitZ(), .lower = -1, .upper = 1}});
+                  {{.name = "root_tx",
+                    .joint_idx = 0,
+                    .is_translation = true,
+                    .is_periodic = false,
+                    .axis = Eigen::Vector3d::UnitX(),
+                    .lower = -1,
+                    .upper = 1},
+                   {.name = "tip_rz",
+                    .joint_idx = 1,
+                    .is_translation = false,
+                    .is_periodic = false,
+                    .axis = Eigen::Vector3d::UnitZ(),
+                    .lower = -1,
+                    .upper = 1}});
 }
 
 TEST_F(Tables, WritesPosesInMetresAndDegrees) {
@@ -48,7 +58,8 @@ TEST_F(Tables, WritesPosesInMetresAndDegrees) {
             "7,0.233333,0.000000,-180.000000,1.000000,3.000\n");
   table.has_scores = false;
   ASSERT_TRUE(write_poses(path_, two_dofs(), table, PoseUnits::kNormalised).ok());
-  EXPECT_THAT(read_text_file(path_).value(), testing::StartsWith("frame,time_s,root_tx_m,tip_rz_deg\n0,0.000000,0.25000000,0.52359878\n"));
+  EXPECT_THAT(read_text_file(path_).value(),
+              testing::StartsWith("frame,time_s,root_tx_m,tip_rz_deg\n0,0.000000,0.25000000,0.52359878\n"));
 }
 
 TEST_F(Tables, PosesComeBack) {
@@ -112,7 +123,8 @@ TEST_F(Tables, NamesFileAndLineOfBadPoses) {
 }
 
 TEST_F(Tables, RefusesToWriteWhatIsNotAPose) {
-  EXPECT_THROW((void)write_poses(path_, two_dofs(), {.rows = {{0, 0, {1}}}, .has_scores = false}), std::invalid_argument);
+  EXPECT_THROW((void)write_poses(path_, two_dofs(), {.rows = {{0, 0, {1}}}, .has_scores = false}),
+               std::invalid_argument);
   EXPECT_THROW((void)write_poses(path_, two_dofs(), {.rows = {{0, 0, {1, NAN}}}, .has_scores = false}),
                std::invalid_argument);
   EXPECT_FALSE(std::filesystem::exists(path_));
@@ -138,7 +150,8 @@ TEST_F(Tables, WritesJointsWithPixelsHalfAPixelLess) {
 }
 
 TEST_F(Tables, ATruthMayLackPixels) {
-  const JointTable table = read_joints(write("frame,time_s,joint,x_m,y_m,z_m\n0,0,head,1,2,3\n1,0,head,1,2,3\n")).value();
+  const JointTable table =
+      read_joints(write("frame,time_s,joint,x_m,y_m,z_m\n0,0,head,1,2,3\n1,0,head,1,2,3\n")).value();
   ASSERT_EQ(table.rows.size(), 2U);
   EXPECT_FALSE(table.has_spread);
   EXPECT_TRUE(std::isnan(table.rows[0].pixel.x()));

@@ -1,6 +1,6 @@
-// Grid: an experiment as experiments/NAME.toml describes it: axes whose combinations are cells (but those left out), the
-// settings of each cell, and the tables and plots to make of the scores. A new experiment of this kind is a new file.
-// Threads: values; reading is without state.
+// Grid: an experiment as experiments/NAME.toml describes it: axes whose combinations are cells (but those left out),
+// the settings of each cell, and the tables and plots to make of the scores. A new experiment of this kind is a new
+// file. Threads: values; reading is without state.
 #pragma once
 
 #include <filesystem>

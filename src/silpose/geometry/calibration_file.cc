@@ -1,10 +1,11 @@
 #include "silpose/geometry/calibration_file.h"
 
+#include <toml++/toml.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string_view>
-#include <toml++/toml.h>
 #include <utility>
 
 #include "silpose/base/check.h"
@@ -110,8 +111,7 @@ Result<FileCamera> read_camera(const std::string& file, std::string_view key, co
   if (!rotation) return rotation.failure();
   const Eigen::Vector3d rodrigues = Eigen::Map<const Eigen::Vector3d>(rotation->data());
   if (rodrigues.norm() > 0) {
-    camera.cam_from_world.rotation =
-        Eigen::AngleAxisd(rodrigues.norm(), rodrigues.normalized()).toRotationMatrix();
+    camera.cam_from_world.rotation = Eigen::AngleAxisd(rodrigues.norm(), rodrigues.normalized()).toRotationMatrix();
   }
   auto translation = numbers(table.get("translation"), 3, 3, where("translation"));
   if (!translation) return translation.failure();
@@ -178,9 +178,9 @@ void assume_up(const std::string& file, const std::vector<FileCamera>& cameras, 
       fmt::format("{}: does not say which axis is up; {}{} assumed from the cameras' mean up direction", file,
                   calibration.up_reversed ? "-" : "", is_z ? "z" : "y"));
   if (std::abs(along) < kClearlyUpright) {
-    calibration.warnings.push_back(fmt::format(
-        "{}: the cameras' mean up direction ({:.2f}, {:.2f}, {:.2f}) is not clear; say which axis is up", file, up.x(),
-        up.y(), up.z()));
+    calibration.warnings.push_back(
+        fmt::format("{}: the cameras' mean up direction ({:.2f}, {:.2f}, {:.2f}) is not clear; say which axis is up",
+                    file, up.x(), up.y(), up.z()));
   }
 }
 
@@ -277,9 +277,9 @@ Result<Calibration> load_calibration(const std::filesystem::path& path, const Ca
     calibration.cameras.push_back(std::move(entry.camera));
   }
   if (!unit && calibration.cameras[0].centre_in_world().norm() > kFarCentre) {
-    calibration.warnings.push_back(fmt::format(
-        "{}: does not say its unit; metres assumed, but camera '{}' would be {:.0f} m from the origin", file,
-        calibration.cameras[0].name, calibration.cameras[0].centre_in_world().norm()));
+    calibration.warnings.push_back(
+        fmt::format("{}: does not say its unit; metres assumed, but camera '{}' would be {:.0f} m from the origin",
+                    file, calibration.cameras[0].name, calibration.cameras[0].centre_in_world().norm()));
   }
   return calibration;
 }
@@ -296,10 +296,11 @@ Result<void> write_cameras(const std::filesystem::path& path, const std::vector<
     const Eigen::AngleAxisd turn(camera.cam_from_world.rotation);
     const Eigen::Vector3d rotation = turn.angle() * turn.axis(), translation = camera.cam_from_world.translation;
     const std::array<double, 2> size = {static_cast<double>(camera.width), static_cast<double>(camera.height)};
-    text += fmt::format("[{}]\nname = {}\nsize = {}\n", toml_string(camera.name), toml_string(camera.name), list_text(size));
-    text += fmt::format("matrix = [[{}, 0.0, {}], [0.0, {}, {}], [0.0, 0.0, 1.0]]\n", float_text(camera.fx),
-                        float_text(camera.cx - kPixelCentre), float_text(camera.fy),
-                        float_text(camera.cy - kPixelCentre));
+    text += fmt::format("[{}]\nname = {}\nsize = {}\n", toml_string(camera.name), toml_string(camera.name),
+                        list_text(size));
+    text +=
+        fmt::format("matrix = [[{}, 0.0, {}], [0.0, {}, {}], [0.0, 0.0, 1.0]]\n", float_text(camera.fx),
+                    float_text(camera.cx - kPixelCentre), float_text(camera.fy), float_text(camera.cy - kPixelCentre));
     // Four coefficients where the fifth is zero: some readers take no more.
     const std::vector<double> distortion(camera.distortion.begin(),
                                          camera.distortion.end() - (camera.distortion[4] == 0 ? 1 : 0));

@@ -17,16 +17,16 @@ namespace silpose {
 enum class UpAxis { kY, kZ };
 
 struct CalibrationOptions {
-  std::optional<UpAxis> up;              // overrides [metadata] up
-  std::optional<double> metres_per_unit; // overrides [metadata] unit
+  std::optional<UpAxis> up;               // overrides [metadata] up
+  std::optional<double> metres_per_unit;  // overrides [metadata] unit
 };
 
 struct Calibration {
-  std::vector<PinholeCamera> cameras;    // [C] in file order
-  UpAxis up = UpAxis::kY;                // of the file's own world
-  bool up_assumed = false;               // not in the file: derived from the cameras' mean up direction
-  bool up_reversed = false;              // assumed, and the axis points down: the world was turned over
-  std::vector<std::string> warnings;     // one line each
+  std::vector<PinholeCamera> cameras;  // [C] in file order
+  UpAxis up = UpAxis::kY;              // of the file's own world
+  bool up_assumed = false;             // not in the file: derived from the cameras' mean up direction
+  bool up_reversed = false;            // assumed, and the axis points down: the world was turned over
+  std::vector<std::string> warnings;   // one line each
 };
 
 // Errors: unreadable file, broken TOML, no camera, missing key, wrong type or length, NaN, size or focal length not

@@ -131,7 +131,8 @@ TEST_F(CalibrationFile, TurnsAZUpWorld) {
 
 TEST_F(CalibrationFile, DeterminesTheUpAxisFromTheMeanOfRolledCameras) {
   const Eigen::Vector3d y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ(), x = Eigen::Vector3d::UnitX();
-  const auto y_up = load(level_camera("a", y, z, 0.5) + level_camera("b", y, -z, 0.4) + level_camera("c", y, x)).value();
+  const auto y_up =
+      load(level_camera("a", y, z, 0.5) + level_camera("b", y, -z, 0.4) + level_camera("c", y, x)).value();
   EXPECT_EQ(y_up.up, UpAxis::kY);
   EXPECT_TRUE(y_up.up_assumed);
   const auto z_up = load(level_camera("a", z, y, -0.6) + level_camera("b", z, -x, 0.6)).value();
@@ -215,7 +216,8 @@ TEST_F(CalibrationFile, NamesFileCameraAndKeyOfBadInput) {
   for (const auto& [key, line, message] : cases) {
     const auto calibration = load(camera_with(key, line));
     ASSERT_FALSE(calibration.ok()) << key << " = " << line;
-    EXPECT_THAT(calibration.error().message, AllOf(HasSubstr(path_.string()), HasSubstr("left one"), HasSubstr(message)));
+    EXPECT_THAT(calibration.error().message,
+                AllOf(HasSubstr(path_.string()), HasSubstr("left one"), HasSubstr(message)));
   }
 }
 
@@ -227,8 +229,9 @@ TEST_F(CalibrationFile, RefusesFilesThatAreNotCalibrations) {
   EXPECT_THAT(load(std::string("\x00\xff\xfe", 3)).error().message, HasSubstr("not TOML"));
   EXPECT_THAT(load(camera_with("", "") + "[metadata]\nup = \"x\"\n").error().message, HasSubstr("[metadata] up"));
   EXPECT_THAT(load(camera_with("", "") + "[metadata]\nunit = 3\n").error().message, HasSubstr("[metadata] unit"));
-  EXPECT_THAT(load(camera_with("", "") + "[right]\nname = \"left one\"\n" + camera_with("name", "").substr(7)).error().message,
-              HasSubstr("two cameras are named 'left one'"));
+  EXPECT_THAT(
+      load(camera_with("", "") + "[right]\nname = \"left one\"\n" + camera_with("name", "").substr(7)).error().message,
+      HasSubstr("two cameras are named 'left one'"));
 }
 
 TEST_F(CalibrationFile, SaysWhereItCannotWrite) {

@@ -16,9 +16,9 @@ namespace silpose {
 
 struct PinholeCamera {
   std::string name = "camera";
-  int width = 0, height = 0;                 // pixels
-  double fx = 0, fy = 0, cx = 0, cy = 0;     // pixels; cx, cy with the centre of the top-left pixel at 0.5
-  std::array<double, 5> distortion{};        // k1 k2 p1 p2 k3
+  int width = 0, height = 0;              // pixels
+  double fx = 0, fy = 0, cx = 0, cy = 0;  // pixels; cx, cy with the centre of the top-left pixel at 0.5
+  std::array<double, 5> distortion{};     // k1 k2 p1 p2 k3
   Rigid3 cam_from_world;
 
   // Points nearer to the camera plane than this, or behind it, are not seen. Metres.

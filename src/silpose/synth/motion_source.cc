@@ -289,7 +289,8 @@ Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& bo
     }
     motion.poses = sweep_dof(body, index, options);
   } else {
-    return error("unknown motion '{}': a .bvh or humanoid3d .txt file, static, dof:INDEX, circle, sway or random", name);
+    return error("unknown motion '{}': a .bvh or humanoid3d .txt file, static, dof:INDEX, circle, sway or random",
+                 name);
   }
   return motion;
 }

@@ -31,7 +31,8 @@ struct SyntheticMotion {
 };
 
 // The motion called `name`; one that ends as a motion file does (exchange/clip_file.h) is read.
-// Errors: unknown motion; a DOF that is not a number or out of range; an unreadable motion file, or one that is too short.
+// Errors: unknown motion; a DOF that is not a number or out of range; an unreadable motion file, or one that is too
+// short.
 Result<SyntheticMotion> make_motion(const std::string& name, const BodyModel& body,
                                     const SyntheticMotionOptions& options = {});
 
