@@ -22,6 +22,7 @@ TEST(Project, IncludesOnlyLowerFloors) {
 TEST(Project, HasNoCirclesBetweenUnits) { EXPECT_THAT(unit_circles(kProject), IsEmpty()); }
 TEST(Project, HasNoFolderThatSaysNothing) { EXPECT_THAT(folder_violations(kProject), IsEmpty()); }
 TEST(Project, CitesOnlyWhatTheBibliographyHolds) { EXPECT_THAT(citation_violations(kProject), IsEmpty()); }
+TEST(Project, IsWrittenInCurrentEnglish) { EXPECT_THAT(wording_violations(kProject), IsEmpty()); }
 
 class SourceRules : public testing::Test {
  protected:
@@ -120,6 +121,16 @@ TEST_F(SourceRules, RefusesCitationsThatDoNotResolve) {
   EXPECT_THAT(citation_violations(root_),
               ElementsAre("src/silpose/body/a.h:3: 'kalman1960a' is not in docs/references.bib",
                           "src/silpose/body/a.h:4: 'makehuman' is not in docs/references.bib"));
+}
+
+TEST_F(SourceRules, NamesIdiomsAndWhatToWrite) {
+  write("src/silpose/track/a.cc", "// The pose is sought.\nvoid seek_anew();\n");
+  write("README.md", "Runs again.\nIt goes on from there.\n");
+  write("tests/layering/own.cc", "// anew\n");
+  EXPECT_THAT(wording_violations(root_),
+              ElementsAre("src/silpose/track/a.cc:1: 'sought': write: searched, re-initialised",
+                          "src/silpose/track/a.cc:2: '_anew': write: again, from scratch",
+                          "README.md:2: 'goes on from': write: resume, continue"));
 }
 
 }  // namespace

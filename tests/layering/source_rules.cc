@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <functional>
 #include <regex>
@@ -15,14 +16,17 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kRecording = "recording";  // the lowest module of silpose that sees sadb
 
-// Calls visit(path from the root, line number, line) for every line of every C++ file under the folder, in name order.
+// Calls visit(path from the root, line number, line) for every line of every file under the folder that has one of the
+// extensions, in name order.
 void for_each_line(const fs::path& root, const fs::path& folder,
-                   const std::function<void(const fs::path&, int, const std::string&)>& visit) {
+                   const std::function<void(const fs::path&, int, const std::string&)>& visit,
+                   const std::set<std::string>& extensions = {".h", ".cc"}) {
   if (!fs::is_directory(root / folder)) return;
   std::vector<fs::path> files;
   for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
-    const fs::path extension = entry.path().extension();
-    if (entry.is_regular_file() && (extension == ".h" || extension == ".cc")) files.push_back(entry.path());
+    if (entry.is_regular_file() && extensions.contains(entry.path().extension().string())) {
+      files.push_back(entry.path());
+    }
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
@@ -220,6 +224,44 @@ std::vector<std::string> citation_violations(const fs::path& root) {
         if (!known.contains(key)) violations.push_back(at(file, number, "'" + key + "' is not in docs/references.bib"));
       }
     });
+  }
+  return violations;
+}
+
+std::vector<std::string> wording_violations(const fs::path& root) {
+  struct Idiom {
+    std::string stem;  // in lower case: a quick test before the expression
+    std::regex pattern;
+    std::string better;
+  };
+  static const std::array<Idiom, 6> kIdioms = {{
+      {"anew", std::regex(R"(\banew\b|_anew\b)"), "again, from scratch"},
+      {"late", std::regex(R"(\bof[ _]late\b)"), "recent, recently"},
+      {"say", std::regex(R"(\b(has|have|had)[ _]a[ _]say\b)"), "counts, is used"},
+      {"sought", std::regex(R"(\bsought\b)"), "searched, re-initialised"},
+      {" on ", std::regex(R"(\b(go|goes|going|gone) on (from|with)\b)"), "resume, continue"},
+      {"in ", std::regex(R"(\bin (vain|sight of)\b)"), "without success; known"},
+  }};
+  std::vector<std::string> violations;
+  const auto visit = [&](const fs::path& file, int number, const std::string& line) {
+    if (file.generic_string().starts_with("tests/layering/")) return;
+    std::string lower = line;
+    std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const Idiom& idiom : kIdioms) {
+      std::smatch found;
+      if (lower.find(idiom.stem) != std::string::npos && std::regex_search(lower, found, idiom.pattern)) {
+        violations.push_back(at(file, number, "'" + found.str() + "': write: " + idiom.better));
+      }
+    }
+  };
+  const std::set<std::string> extensions = {".h", ".cc", ".md", ".toml", ".sh", "", ".js", ".py"};
+  for (const char* top : {"src", "apps", "bench", "examples", "scripts", "docs", "experiments", "tests"}) {
+    for_each_line(root, top, visit, extensions);
+  }
+  for (const char* name : {"README.md", "ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md"}) {
+    std::ifstream stream(root / name);
+    std::string line;
+    for (int number = 1; std::getline(stream, line); ++number) visit(name, number, line);
   }
   return violations;
 }
