@@ -1,18 +1,16 @@
 #include "apps/silpose/body_levels.h"
 
 #include <algorithm>
-#include <array>
 
+#include "silpose/body/levels.h"
 #include "silpose/render/level_accuracy.h"
 
 namespace silpose::app {
 
 void add_levels(BodyModel& body, Console& console) {
-  // What tracking requests: to rank starts, to sample, to fit poses, to fit bodies; and steps between.
-  constexpr std::array kVertices = {800, 1000, 1250, 1500, 2000, 2500, 3000, 5000};
   console.message("building its levels of detail");
   body.levels.clear();
-  for (const int num_vertices : kVertices) {
+  for (const int num_vertices : kKeptLevels) {
     BodyLevel level = simplify(body, num_vertices);
     if (level.vertices.size() >= body.rest.vertices.size()) break;  // no coarser than the body itself
     const LevelAccuracy accuracy = level_accuracy(body, level);

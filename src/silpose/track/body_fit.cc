@@ -12,6 +12,7 @@
 #include "silpose/base/median.h"
 #include "silpose/base/parallel.h"
 #include "silpose/body/girth.h"
+#include "silpose/body/levels.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/track/girth_fit.h"
@@ -32,7 +33,6 @@ constexpr FitStage kStages[] = {{Blur::k8, 6}, {Blur::k4, 6}};
 // starts from the result of the one before.
 constexpr int kRounds = 3;
 constexpr SmallestGain kSmallestGain{.relative = 1e-3};
-constexpr int kVertices = 3000;        // of the mesh that is compared
 constexpr double kRestWeight = 0.2;    // plausibility.h
 constexpr double kMaxRotation = 0.35;  // radians a step
 constexpr size_t kInstants = 16;       // [guess] of the clip, evenly spread: neighbours carry the same information
@@ -280,7 +280,7 @@ std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const C
     return fit;
   }
 
-  const BodyModel coarse = level_of_detail(given, kVertices);
+  const BodyModel coarse = level_of_detail(given, kBodyFitLevel);
   const BodyModel bare = stretchable(coarse);
   const size_t count = std::min(kInstants, usable.size());
   const double redundancy = std::max(1.0, static_cast<double>(count) / kIndependentInstants);

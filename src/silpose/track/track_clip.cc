@@ -11,6 +11,7 @@
 #include "silpose/base/clock.h"
 #include "silpose/base/parallel.h"
 #include "silpose/base/state_bytes.h"
+#include "silpose/body/levels.h"
 #include "silpose/motion/noise.h"
 #include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
@@ -317,7 +318,7 @@ class ClipTracker {
     std::vector<StepReport> reports = waiting(0, clip_.size());
     std::vector<BatchRenderer> seen_by;
     for (const PinholeCamera& camera : options_.cameras) seen_by.emplace_back(options_.body, camera);
-    const BodyError body_error(level_of_detail(body, kBodyErrorVertices), options_.cameras, options_.size_deviation);
+    const BodyError body_error(level_of_detail(body, kRankingLevel), options_.cameras, options_.size_deviation);
     parallel_for(smoothed.poses.size(), 4, [&](size_t begin, size_t end) {
       CoverageLikelihood::Scratch scratch(*likelihood_), of_stretched(body_error.likelihood());
       for (size_t i = begin; i < end; ++i) {
@@ -353,7 +354,6 @@ class ClipTracker {
   }
 
   static constexpr size_t kNumPasses = 3;
-  static constexpr int kBodyErrorVertices = 800;
   static constexpr double kPassShare = 0.35;     // of the whole work, one pass over the whole clip
   static constexpr double kTransitionScale = 4;  // times acceleration_deviation: hypotheses are fits, not truths
   static constexpr double kTransitionCap = 30;   // of one DOF
@@ -378,10 +378,9 @@ class ClipTracker {
 }  // namespace
 
 TrackerOptions options_of_pass(const TrackerOptions& options) {
-  constexpr int kVertices = 2500;
   TrackerOptions pass = options.resolved();
   pass.smooth = false;
-  if (*pass.lod_vertices == 0 || *pass.lod_vertices > kVertices) pass.lod_vertices = kVertices;
+  if (*pass.lod_vertices == 0 || *pass.lod_vertices > kTrackingLevel) pass.lod_vertices = kTrackingLevel;
   return pass;
 }
 

@@ -7,6 +7,7 @@
 #include "silpose/base/check.h"
 #include "silpose/base/clock.h"
 #include "silpose/base/state_bytes.h"
+#include "silpose/body/levels.h"
 #include "silpose/filter/estimate.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/render/silhouette.h"
@@ -21,7 +22,7 @@ namespace silpose {
 namespace {
 
 // [guess] The mesh by which candidates are ranked.
-constexpr int kRankingVertices = 800, kRankingRows = 1;
+constexpr int kRankingRows = 1;
 // [guess] After coasting for longer than this the subject may be anywhere, and the next good mask starts over.
 constexpr double kLongestCoast_s = 1.0;
 
@@ -50,7 +51,7 @@ struct Tracker::Impl {
     const auto fine = level_of_detail(options.body, *options.lod_vertices);
     likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
     likelihoods.plausibility = std::make_shared<const Plausibility>(fine, *options.floor);
-    const auto coarse = level_of_detail(options.body, kRankingVertices);
+    const auto coarse = level_of_detail(options.body, kRankingLevel);
     for (const PinholeCamera& camera : options.cameras) {
       seen_by.emplace_back(options.body, camera);
       expected_by.emplace_back(coarse, camera);

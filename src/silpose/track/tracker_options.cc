@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
+#include "silpose/body/levels.h"
 #include "silpose/filter/resampling.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/motion/motion_model.h"
@@ -18,7 +19,7 @@ TrackerOptions TrackerOptions::resolved() const {
     if (!all.num_hypotheses) all.num_hypotheses = accurate ? 8 : 4;
     if (!all.smooth) all.smooth = accurate;
     if (!all.floor) all.floor = true;
-    if (!all.lod_vertices) all.lod_vertices = accurate ? 0 : 2500;
+    if (!all.lod_vertices) all.lod_vertices = accurate ? 0 : kTrackingLevel;
     return all;
   }
   if (!all.num_layers) all.num_layers = thesis || all.num_particles ? 1 : 10;
@@ -34,7 +35,7 @@ TrackerOptions TrackerOptions::resolved() const {
   if (!all.estimate) all.estimate = Estimate::kMean;
   if (!all.smooth) all.smooth = false;
   if (!all.floor) all.floor = false;
-  if (!all.lod_vertices) all.lod_vertices = 2000;
+  if (!all.lod_vertices) all.lod_vertices = kSamplingLevel;
   return all;
 }
 
