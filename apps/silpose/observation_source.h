@@ -49,7 +49,8 @@ class ObservationSource {
   static Result<ObservationSource> open(const InputOptions& options);
 
   // Makes the segmenters, which learn what they have to learn. Errors: those of make_segmenter(); a garbage mask of
-  // another size. REQUIRES: called before the first next().
+  // another size. Throws UsageError for an option whose text or number of values does not fit. REQUIRES: called once,
+  // before the first next().
   Result<void> learn(Console& console);
 
   // From here on about `count` instants are given, evenly over the clip; the others are not segmented.
@@ -63,7 +64,8 @@ class ObservationSource {
   // The same, without masks: only segmenters that must see every picture are shown it.
   Result<std::optional<Frame>> skip();
 
-  // Back to the first instant, as if none had been given; what was learned is not learned again. Errors: as learn().
+  // Back to the first instant, as if none had been given. What was learned is kept, unless a segmenter cannot go back.
+  // Errors: as learn().
   Result<void> rewind(Console& console);
 
   // What next() carries from call to call. Another source with the same options that skipped as many instants continues
@@ -103,7 +105,7 @@ class ObservationSource {
   std::unique_ptr<Video> video_;
   std::vector<std::unique_ptr<Segmenter>> segmenters_;
   std::vector<std::string> warnings_;
-  std::optional<std::vector<std::string>> video_warnings_;  // of the last pass but that of videos_again()
+  std::optional<std::vector<std::string>> video_warnings_;  // of the pass before videos_again()
   std::string first_state_;
   int64_t stride_ = 1, num_wanted_ = 0;
   int64_t num_seen_ = 0, num_cut_ = 0;  // masks with a subject, and of these at the edge of the picture

@@ -121,18 +121,18 @@ class TrackRun {
       if (Result<void> put = recorder_.put(report); !put) return put;
     }
     console_.message(fmt::format("{}: {} frames are done; resuming {}", resume_.folder.string(), now_.num_frames,
-                                 place_of_resume(last + 1)));
+                                 place_of_resume(last)));
     return {};
   }
 
   // Where the checkpoint was written, for the user.
-  [[nodiscard]] std::string place_of_resume(int64_t next_frame_idx) const {
+  [[nodiscard]] std::string place_of_resume(int64_t last_frame_idx) const {
     const bool is_whole = !now_.seen.empty();
     if (is_whole && !now_.reports.empty()) return "with the overlay";
     if (!now_.given_poses.empty())
       return now_.tracker.empty() ? "with the fit of the body" : "after the fit of the body";
     if (is_whole && !now_.tracker.empty()) return "in the pass over the whole clip";
-    return fmt::format("at frame {}", next_frame_idx);
+    return fmt::format("after frame {}", last_frame_idx);
   }
 
   // Until all files of the frames so far are written.

@@ -39,7 +39,7 @@ rows=$(($(wc -l <twice.partial/poses.csv) - 1))
 [[ $rows -ge 5 && $rows -lt 24 ]] || fail "$rows rows in the partial poses.csv"
 stop INT twice masks/000020.png "${online[@]}" --resume
 "$silpose" track "${online[@]}" --resume --threads 1 --out twice >/dev/null 2>err.txt || fail "--resume: exit $?: $(cat err.txt)"
-grep -q -E 'twice.partial: [0-9]+ frames are done; resuming at frame [0-9]+' err.txt || fail "does not say where it resumes: $(cat err.txt)"
+grep -q -E 'twice.partial: [0-9]+ frames are done; resuming after frame [0-9]+' err.txt || fail "does not say where it resumes: $(cat err.txt)"
 same whole twice "${tables[@]}" camera.toml config.toml masks/000006.png masks/000029.png overlay.mp4
 
 # One of many clips.
@@ -68,7 +68,9 @@ same whole fresh poses.csv
 
 "$silpose" synth --out pair --model human:height=1.75 --motion sway --frames 6 --size 160x120 --view 30 --view 120 --seed 3 --quiet
 pair=(pair/masks_30 pair/masks_120 --segmenter masks --camera pair/camera.toml --camera-name 30 --camera-name 120
-      --preset accurate --model human:height=1.65 --vertices 600 --hypotheses 1)
+      --preset accurate --model human:height=1.65 --vertices 600 --hypotheses 1
+      --garbage-mask garbage.pgm)
+{ printf 'P5\n160 120\n255\n' && head -c 16000 /dev/zero | tr '\0' '\377' && head -c 3200 /dev/zero; } >garbage.pgm  # no feet
 "$silpose" track "${pair[@]}" --out pair_whole --quiet
 stop INT pair_again checkpoint.bin "${pair[@]}"
 "$silpose" track "${pair[@]}" --resume --out pair_again --quiet || fail "--resume of a fitted body: exit $?"
@@ -137,7 +139,7 @@ truncate -s -100 kept.partial/checkpoint.bin
 damaged 'checkpoint.bin: truncated; without --resume'
 cp whole.bin kept.partial/checkpoint.bin
 printf '\x07' | dd of=kept.partial/checkpoint.bin bs=1 seek=8 conv=notrunc status=none
-damaged 'checkpoint of silpose track of version 7, not 3'
+damaged 'checkpoint of silpose track of version 7, not 4'
 cp whole.bin kept.partial/checkpoint.bin
 printf 'x' | dd of=kept.partial/checkpoint.bin bs=1 seek=500 conv=notrunc status=none
 damaged 'damaged'

@@ -22,7 +22,8 @@ std::vector<std::string> include_violations(const std::filesystem::path& root, c
 
 // Circles of #include lines between units of one module: of src/silpose/*, of src/sadb/*, of apps/silpose or of bench.
 // A unit is NAME.h, NAME.cc and NAME-inl.h; tests (*_test.cc) do not count. One line for each set of units that all
-// depend on one another, with a shortest circle among them: "src/silpose/track: limb_reach -> limbs -> limb_reach".
+// depend on one another, with the shortest circle through the first of them: "src/silpose/track: limb_reach -> limbs ->
+// limb_reach".
 std::vector<std::string> unit_circles(const std::filesystem::path& root);
 
 // Folders with names that do not say what is in them, anywhere under ROOT/{src,apps,bench,examples,tests}.

@@ -25,8 +25,7 @@ struct RunSettings {
   // The masks.
   std::string mask_noise = "none";  // synth/degraded_mask.h: none, shadow, edge, limb, hole
   double mask_iou = 0.9;            // of edge: with the true masks, on average
-  bool faults_known = false;        // wrong pixels, and those next to them, are marked as uncertain: the best that
-                                    // a segmenter's confidence could give
+  bool faults_known = false;        // wrong pixels, and those within 2 pixels of them, are ignored
   bool keypoints = false;           // with each mask, those that a network might see (synth/simulated_keypoints.h)
   // A recorded clip in place of both. Paths are relative to the data folder.
   std::vector<std::string> clip;          // one video per camera, in step; empty: the run is on a rendered sequence

@@ -29,7 +29,7 @@ class FrameSource {
   // The next picture, nullopt at the end. Errors: unreadable.
   virtual Result<std::optional<Picture>> next() = 0;
 
-  // Back to the first picture. Errors: a live camera; the input vanished.
+  // Back to the first picture. May forget what follows until that is read. Errors: a live camera; the input vanished.
   virtual Result<void> rewind() = 0;
 
   // The rest is optional. It is known once the first picture has been read.
@@ -39,7 +39,7 @@ class FrameSource {
   [[nodiscard]] virtual bool is_live() const { return false; }         // cannot rewind; times are the clock's
   // The lens's focal length as the 35 mm equivalent according to the metadata, mm.
   [[nodiscard]] virtual std::optional<double> focal_mm35() const { return {}; }
-  // Numbers of the pictures, strictly increasing; empty: they are numbered from 0.
+  // Numbers of the pictures, one for each, strictly increasing; empty: they are numbered from 0.
   [[nodiscard]] virtual std::span<const int64_t> numbers() const { return {}; }
   // At the end: it came before the input said it would.
   [[nodiscard]] virtual bool broke_off() const { return false; }

@@ -58,6 +58,32 @@ int64_t and_count(const Mask& a, const Mask& b) {
   return count_and_bits(a.words(), b.words());
 }
 
+Mask without(Mask mask, const Mask& removed) {
+  check_equal_sizes(mask, removed);
+  for (int y = 0; y < mask.height(); ++y) {
+    const auto row = mask.row(y);
+    const auto out = removed.row(y);
+    for (size_t w = 0; w < row.size(); ++w) row[w] &= ~out[w];
+  }
+  return mask;
+}
+
+bool are_adjacent(const Mask& a, const Mask& b) {
+  check_equal_sizes(a, b);
+  for (int y = 0; y < a.height(); ++y) {
+    const auto row = a.row(y), other = b.row(y);
+    for (size_t w = 0; w < row.size(); ++w) {
+      uint64_t near = row[w] << 1 | row[w] >> 1;
+      if (w > 0) near |= row[w - 1] >> 63;
+      if (w + 1 < row.size()) near |= row[w + 1] << 63;
+      if (y > 0) near |= a.row(y - 1)[w];
+      if (y + 1 < a.height()) near |= a.row(y + 1)[w];
+      if ((near & other[w]) != 0) return true;
+    }
+  }
+  return false;
+}
+
 int64_t or_count(const Mask& a, const Mask& b) {
   check_equal_sizes(a, b);
   return count_or_bits(a.words(), b.words());

@@ -61,6 +61,12 @@ int64_t xor_count(const Mask& a, const Mask& b);
 int64_t and_count(const Mask& a, const Mask& b);
 int64_t or_count(const Mask& a, const Mask& b);
 
+// The pixels of `mask` that `removed` does not have. REQUIRES: equal sizes.
+Mask without(Mask mask, const Mask& removed);
+
+// Whether a pixel of one is next to one of the other, above, below, left or right. REQUIRES: equal sizes.
+bool are_adjacent(const Mask& a, const Mask& b);
+
 // Intersection over union; 1 when both are empty. REQUIRES: equal sizes.
 double intersection_over_union(const Mask& a, const Mask& b);
 

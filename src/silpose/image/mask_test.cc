@@ -111,5 +111,25 @@ TEST(Mask, RefusesWhatCannotBe) {
   EXPECT_THROW(mask_from_image(ByteImage(2, 2, 3)), std::invalid_argument);
 }
 
+TEST(Mask, WithoutSomePixels) {
+  const Mask mask = mask_from_text("##.\n.##"), removed = mask_from_text("#..\n..#");
+  EXPECT_EQ(text_from_mask(without(mask, removed)), text_from_mask(mask_from_text(".#.\n.#.")));
+  EXPECT_THROW(without(mask, Mask(2, 2)), std::invalid_argument);
+}
+
+TEST(Mask, AdjacentInRowsColumnsAndAcrossWords) {
+  for (const auto& [x, y] : {std::pair(63, 5), {65, 5}, {64, 4}, {64, 6}}) {
+    Mask a(130, 10), b(130, 10);
+    a.set(64, 5), b.set(x, y);
+    EXPECT_TRUE(are_adjacent(a, b)) << x << " " << y;
+    EXPECT_TRUE(are_adjacent(b, a)) << x << " " << y;
+  }
+  for (const auto& [x, y] : {std::pair(66, 5), {63, 4}, {65, 6}, {64, 7}, {0, 6}}) {
+    Mask a(130, 10), b(130, 10);
+    a.set(64, 5), b.set(x, y);
+    EXPECT_FALSE(are_adjacent(a, b)) << x << " " << y;
+  }
+}
+
 }  // namespace
 }  // namespace silpose

@@ -13,7 +13,8 @@ namespace silpose {
 class MemorySource : public FrameSource {
  public:
   // `images`: [T] of [H, W, 3] B, G, R. `fps`: 0 where it is unknown. `times_ns`: [T], strictly increasing, or empty
-  // for even times. Errors: throws std::invalid_argument for other channels, a negative rate, another number of times.
+  // for even times. Errors: throws std::invalid_argument for other channels, a rate outside [0, 1e6], another number of
+  // times, times that do not grow.
   explicit MemorySource(std::vector<ByteImage> images, double fps = 0, std::vector<int64_t> times_ns = {},
                         std::string name = "memory");
 

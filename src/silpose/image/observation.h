@@ -25,20 +25,24 @@ struct Trust {
 };
 
 struct Observation {
-  Mask mask;                                        // [H, W] the subject's silhouette
-  ByteImage confidence = {};                        // [H, W] of each pixel, 255: certain; empty: certain everywhere
-  std::shared_ptr<const Mask> ignored = {};         // [H, W] pixels of which nothing is known; null: none
-  std::shared_ptr<const DepthImage> depth_mm = {};  // [H, W] 0: not measured; null: no depth
-  std::vector<Keypoint2D> keypoints_2d = {};        // of the body; empty from most segmenters
-  Keypoints3D keypoints_3d = {};                    // the same in space
+  Mask mask;                                  // [H, W] the subject's silhouette
+  ByteImage confidence = {};                  // [H, W] of each pixel, 255: certain; empty: certain everywhere
+  std::shared_ptr<const Mask> ignored = {};   // [H, W] pixels of which nothing is known; null: none
+  std::vector<Keypoint2D> keypoints_2d = {};  // of the body; empty from most segmenters
+  Keypoints3D keypoints_3d = {};              // the same in space
   Trust trust = {};
 
   // The smallest box around the mask; empty where nothing was found.
   [[nodiscard]] Box box() const { return mask.bounding_box(); }
+  // A silhouette without the ignored pixels. REQUIRES: of the mask's size.
+  [[nodiscard]] Mask known(const Mask& silhouette) const {
+    return ignored ? without(silhouette, *ignored) : silhouette;
+  }
 };
 
-// The weight, 0 to 255, of a pixel of this confidence in every comparison of silhouettes. Even the most doubtful pixel
-// keeps half of its weight: a fit would otherwise move to where whole outlines are in doubt and need no explanation.
+// The weight, of 255, of a pixel of this confidence where fits compare silhouettes (CoverageLikelihood). Even the most
+// doubtful pixel keeps half of its weight: a fit would otherwise move to where whole outlines are in doubt and need no
+// explanation.
 constexpr uint8_t pixel_weight(uint8_t confidence) { return static_cast<uint8_t>(128 + confidence / 2); }
 
 // Errors: throws std::invalid_argument where the confidence or the ignored pixels are not of the mask's size.

@@ -35,19 +35,21 @@ double CoverageEvidence::keypoint_cost(const Skeleton& skeleton, std::span<const
   return sum;
 }
 
-double outline_length(const Mask& mask) {
+double outline_length(const Observation& observation) {
+  const Mask& mask = observation.mask;
+  const Mask none(observation.ignored ? 0 : mask.width(), observation.ignored ? 0 : mask.height());
+  const Mask& ignored = observation.ignored ? *observation.ignored : none;
   int64_t borders = 0;
   for (int y = 0; y < mask.height(); ++y) {
-    const auto row = mask.row(y);
-    uint64_t last = 0;
+    const auto row = mask.row(y), out = ignored.row(y);
+    uint64_t last = 0, last_out = 0;
     for (size_t w = 0; w < row.size(); ++w) {
-      const uint64_t shifted = row[w] << 1 | last;
-      uint64_t change = row[w] ^ shifted;
+      uint64_t change = (row[w] ^ (row[w] << 1 | last)) & ~(out[w] | out[w] << 1 | last_out);
       if (w == 0) change &= ~uint64_t{1};
       if (w + 1 == row.size() && mask.width() % 64 != 0) change &= (uint64_t{1} << (mask.width() % 64)) - 1;
       borders += std::popcount(change);
-      last = row[w] >> 63;
-      if (y > 0) borders += std::popcount(row[w] ^ mask.row(y - 1)[w]);
+      last = row[w] >> 63, last_out = out[w] >> 63;
+      if (y > 0) borders += std::popcount((row[w] ^ mask.row(y - 1)[w]) & ~(out[w] | ignored.row(y - 1)[w]));
     }
   }
   return static_cast<double>(borders) * 0.78539816339744831;  // steps of a line of random direction are 4 / pi too long

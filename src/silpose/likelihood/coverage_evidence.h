@@ -61,6 +61,6 @@ struct CoverageEvidence {
 
 // Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps
 // of slanting lines: isotropic outlines come out right on average). The picture's own border does not count.
-double outline_length(const Mask& mask);
+double outline_length(const Observation& observation);
 
 }  // namespace silpose

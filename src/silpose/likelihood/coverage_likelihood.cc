@@ -97,7 +97,7 @@ CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observ
     view.keypoints = make_keypoint_term(body(), camera, observation, kind);
     const double extent = std::max(box.height, box.width);
     view.pixel_unit = std::max(extent / CoverageEvidence::kSubjectHeight, 0.25);
-    view.outline_length = outline_length(observation.mask);
+    view.outline_length = outline_length(observation);
     evidence.noise.back() = kExactNoise * std::pow(view.pixel_unit, 3);
     for (auto b = static_cast<size_t>(narrowest); b <= static_cast<size_t>(widest); ++b) {
       const int cell = std::max(1, static_cast<int>(std::lround(kBlurSigma[b] * view.pixel_unit)));

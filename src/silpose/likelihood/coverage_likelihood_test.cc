@@ -66,7 +66,7 @@ TEST(OutlineLength, OfADiscIsItsCircumference) {
       if (std::hypot(x - 99.5, y - 99.5) < 70) mask.set(x, y);
     }
   }
-  EXPECT_NEAR(outline_length(mask), 2 * kPi * 70, 10);
+  EXPECT_NEAR(outline_length(observation_of(mask)), 2 * kPi * 70, 10);
 }
 
 // An axis-aligned block that is one pixel off to the right: both upright sides are, and E is their length.
@@ -226,6 +226,32 @@ TEST(CoverageLikelihood, IgnoresWhereItIsNotConfident) {
   observation.ignored = std::make_shared<const Mask>(ignored);
   const double warned = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
   EXPECT_LT(warned, 0.01 * fooled);
+}
+
+// An occluder across the body, whose edges cut through cells: what is behind it neither pulls nor counts as outline.
+TEST(CoverageLikelihood, ABodyBehindIgnoredPixelsStaysWhereItIs) {
+  const auto body = small_body();
+  const PinholeCamera camera = look_at_camera(320, 240, 300, {0, 1, 3.5}, {0, 0.75, 0});
+  const CoverageLikelihood likelihood(body, {camera});
+  CoverageLikelihood::Scratch scratch(likelihood);
+  const std::vector<double> truth = bent_pose(*body, 0.3);
+  Observation observation = observation_of(render_silhouette(*body, camera, truth));
+  const Box box = observation.box();
+  const auto seen = likelihood.prepare(std::vector{observation});
+  Mask ignored(320, 240);
+  for (int y = box.y + box.height / 3; y < box.y + box.height / 3 + 21; ++y) {
+    for (int x = 0; x < 320; ++x) ignored.set(x, y), observation.mask.set(x, y, false);
+  }
+  const auto cut = likelihood.prepare(std::vector{observation});
+  observation.ignored = std::make_shared<const Mask>(ignored);
+  const auto known = likelihood.prepare(std::vector{observation});
+  EXPECT_LT(known.views[0].outline_length, seen.views[0].outline_length);
+  for (const Blur blur : {Blur::k2, Blur::k4, Blur::k8}) {
+    const double whole = likelihood.energy(seen, blur, truth, scratch);
+    const double fooled = likelihood.energy(cut, blur, truth, scratch);
+    const double warned = likelihood.energy(known, blur, truth, scratch);
+    EXPECT_LT(warned, whole + 0.05 * (fooled - whole)) << static_cast<int>(blur);
+  }
 }
 
 TEST(CoverageLikelihood, RefusesAMaskOfAnotherSize) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
@@ -21,22 +22,18 @@ int64_t sum_of(const ByteImage& covered) {
   return std::accumulate(covered.pixels().begin(), covered.pixels().end(), int64_t{0});
 }
 
-// Leaves out of the view what its observation ignores.
+// Leaves out of the view what its observation ignores: whole raster pixels, of coverages also those that are ignored in
+// part.
 void ignore(Evidence::View& view, const Mask& ignored) {
   if (view.covered.empty()) {
     view.ignored = resample_mask(ignored, view.window);
-    for (int y = 0; y < view.observed.height(); ++y) {
-      const auto row = view.observed.row(y);
-      const auto out = view.ignored.row(y);
-      for (size_t w = 0; w < row.size(); ++w) row[w] &= ~out[w];
-    }
+    view.observed = without(std::move(view.observed), view.ignored);
     return;
   }
   view.ignored_coverage = resample_coverage(ignored, view.window, kFullCoverage);
-  const auto covered = view.covered.pixels();
-  const auto out = view.ignored_coverage.pixels();
+  const auto covered = view.covered.pixels(), out = view.ignored_coverage.pixels();
   for (size_t i = 0; i < covered.size(); ++i) {
-    covered[i] = std::min(covered[i], static_cast<uint8_t>(kFullCoverage - out[i]));
+    if (out[i] > 0) covered[i] = 0, out[i] = kFullCoverage;
   }
 }
 

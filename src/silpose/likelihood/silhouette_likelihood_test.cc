@@ -43,8 +43,9 @@ TEST_F(SilhouetteLikelihoodTest, IgnoredPixelsDoNotCount) {
   for (int y = 0; y < 240; ++y) {
     for (int x = box.x + box.width / 2; x < 320; ++x) ignored.set(x, y), observation.mask.set(x, y, y % 2 == 0);
   }
-  for (const Metric metric : {Metric::kPixelCount, Metric::kCoverage}) {
-    const auto likelihood = make({.metric = metric, .resolution = 320});
+  for (const auto& [metric, resolution] :
+       {std::pair(Metric::kPixelCount, 320), {Metric::kCoverage, 320}, {Metric::kCoverage, 60}}) {
+    const auto likelihood = make({.metric = metric, .resolution = resolution});
     double clean = 0, fooled = 0, warned = 0;
     likelihood.distances(likelihood.prepare(std::vector{observe(pose_)}), batch({pose_}), {&clean, 1});
     likelihood.distances(likelihood.prepare(std::vector{observation}), batch({pose_}), {&fooled, 1});
@@ -52,7 +53,8 @@ TEST_F(SilhouetteLikelihoodTest, IgnoredPixelsDoNotCount) {
     known.ignored = std::make_shared<const Mask>(ignored);
     likelihood.distances(likelihood.prepare(std::vector{known}), batch({pose_}), {&warned, 1});
     EXPECT_GT(fooled, 0.3);
-    EXPECT_NEAR(warned, clean, 0.01);
+    EXPECT_NEAR(warned, clean, resolution == 320 ? 0.01 : 0.03);
+    EXPECT_GE(warned, 0);
   }
 }
 

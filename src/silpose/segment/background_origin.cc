@@ -9,7 +9,6 @@ namespace silpose {
 namespace {
 
 constexpr std::string_view kLeadIn = "lead-in:";
-constexpr double kLongestLeadIn_s = 1e6;
 
 }  // namespace
 

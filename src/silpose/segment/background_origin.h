@@ -12,8 +12,9 @@ struct BackgroundOfClip {};  // the whole clip; of a live camera online
 struct BackgroundOnline {
   bool knn = false;  // OpenCV's mixture: KNN (references.bib: zivkovic2006), otherwise MOG2 (zivkovic2004)
 };
+inline constexpr double kLongestLeadIn_s = 1e6;
 struct BackgroundLeadIn {
-  double seconds = 1;  // of the clip's beginning, in which the subject is not there
+  double seconds = 1;  // of the clip's beginning, in which the subject is not there; up to kLongestLeadIn_s
 };
 struct BackgroundPlate {
   std::string path;  // a video or an image of the empty scene

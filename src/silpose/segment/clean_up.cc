@@ -146,7 +146,7 @@ std::shared_ptr<const Mask> removed_by(const std::optional<Mask>& garbage_mask) 
   for (int y = 0; y < removed->height(); ++y) {
     for (int x = 0; x < removed->width(); ++x) removed->set(x, y, !garbage_mask->get(x, y));
   }
-  return removed;
+  return removed->count() > 0 ? removed : nullptr;
 }
 
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected) {
@@ -213,7 +213,9 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Ma
     covered += area[label];
   }
   if (best == 0) return blob;
-  if (static_cast<double>(covered) < kLeastCovered * static_cast<double>(expected.count()) || covered == 0) {
+  const bool is_cut = options.garbage_mask && expected.width() > 0;
+  const int64_t to_be_seen = is_cut ? and_count(expected, *options.garbage_mask) : expected.count();
+  if (static_cast<double>(covered) < kLeastCovered * static_cast<double>(to_be_seen) || covered == 0) {
     is_kept = parts_near(mat, labels, area, best);
     covered = 0;
     for (size_t label = 1; label < count; ++label) covered += is_kept[label] ? area[label] : 0;

@@ -33,7 +33,7 @@ struct CleanUpOptions {
 inline constexpr double kExpectedMargin = 0.08;
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected = {});
 
-// The pixels that a garbage mask removes, of which nothing is known; null without one.
+// The pixels that a garbage mask removes, of which nothing is known; null where there are none.
 std::shared_ptr<const Mask> removed_by(const std::optional<Mask>& garbage_mask);
 
 // Fills holes (4-connected, not touching the border) of at most max_area pixels.

@@ -163,6 +163,8 @@ Result<std::unique_ptr<Segmenter>> make_background(Video& video, const Segmenter
     return make_online_segmenter(online->knn ? OnlineMixture::kKnn : OnlineMixture::kMog2, std::move(made));
   }
   if (const auto* lead_in = std::get_if<BackgroundLeadIn>(&origin)) {
+    check(lead_in->seconds > 0 && lead_in->seconds <= kLongestLeadIn_s, "make_segmenter: a lead-in of {} s",
+          lead_in->seconds);
     if (video.is_live()) return error("{}: the background of a live camera is learned online", input);
     Result<BackgroundSamples> samples = sample(video, std::llround(lead_in->seconds * 1e9), progress);
     if (!samples) return samples.failure();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "silpose/image/memory_source.h"
 #include "silpose/segment/scene_for_test.h"
 
 namespace silpose {
@@ -396,6 +397,61 @@ TEST_F(MakeSegmenterTest, StopsWhenAsked) {
     bool update(std::string_view, int64_t done, int64_t) override { return done < 5; }
   } stop;
   EXPECT_THAT(make_of(at("clip"), {}, 30, &stop).error().message, HasSubstr("stopped"));
+}
+
+// What a garbage mask removes is ignored, whatever the segmenter; without one nothing is.
+TEST_F(MakeSegmenterTest, WhatAGarbageMaskRemovesIsIgnored) {
+  write_masks("masks", kFrames);
+  Mask garbage(160, 120);
+  for (int y = 0; y < 120; ++y) {
+    for (int x = 0; x < 100; ++x) garbage.set(x, y);
+  }
+  SegmenterOptions kinds[] = {
+      {.kind = "background"}, {.kind = "background", .background = BackgroundOnline{}}, {.masks = at("masks")}};
+  for (SegmenterOptions& options : kinds) {
+    EXPECT_EQ(make_of(at("clip"), options).value()->segment(picture(0), 0).value().ignored, nullptr);
+    options.clean_up.garbage_mask = garbage;
+    const auto segmenter = make_of(at("clip"), options).value();
+    ASSERT_NE(segmenter->ignored(), nullptr) << segmenter->name();
+    EXPECT_EQ(segmenter->ignored()->bounding_box(), (Box{100, 0, 60, 120}));
+    for (int i = 0; i < 45; ++i) {
+      const Observation seen = segmenter->segment(picture(i), i).value();
+      if (seen.trust.nothing_found) continue;
+      EXPECT_EQ(seen.ignored, segmenter->ignored()) << segmenter->name() << " " << i;
+      EXPECT_EQ(and_count(seen.mask, *seen.ignored), 0) << segmenter->name() << " " << i;
+    }
+  }
+}
+
+// Frames that never were a file, of two cameras, each learned from alone.
+TEST_F(MakeSegmenterTest, LearnsFromFramesInMemoryOfEachCamera) {
+  std::vector<std::unique_ptr<FrameSource>> sources;
+  for (int c = 0; c < 2; ++c) {
+    std::vector<ByteImage> images;
+    for (int i = 0; i < kFrames; ++i) images.push_back(picture(i));
+    sources.push_back(std::make_unique<MemorySource>(std::move(images), 10));
+  }
+  Video video = join_sources(std::move(sources)).value();
+  std::vector<std::unique_ptr<Segmenter>> segmenters;
+  for (int c = 0; c < 2; ++c) {
+    Video alone = video.alone(c);
+    segmenters.push_back(make_segmenter(alone).value());
+    EXPECT_EQ(segmenters.back()->name(), "background auto");
+  }
+  EXPECT_THROW((void)make_segmenter(video), std::invalid_argument);
+  video.rewind().value();
+  int count = 0;
+  for (const Frame& frame : video) {
+    EXPECT_EQ(frame.index, count++);
+    for (size_t c = 0; c < 2; ++c) {
+      const Observation seen = segmenters[c]->segment(frame.images[c], frame.index).value();
+      const Mask expected = truth(static_cast<int>(frame.index));
+      if (expected.count() == 24 * 60) {
+        EXPECT_GT(intersection_over_union(seen.mask, expected), 0.93) << frame.index;
+      }
+    }
+  }
+  EXPECT_EQ(count, kFrames);
 }
 
 }  // namespace

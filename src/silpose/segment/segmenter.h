@@ -1,4 +1,4 @@
-// Segmenter: picture to mask of the subject, and how far the mask can be trusted.
+// Segmenter: from an image to the observation of the subject: mask, confidence, ignored pixels, keypoints, trust.
 // Threads: one thread per segmenter; works on all cores itself.
 #pragma once
 
@@ -20,8 +20,9 @@ class Segmenter {
  public:
   virtual ~Segmenter() = default;
 
-  // The mask of picture number `index` of the video, [H, W, 3] B, G, R. Indices rise from call to call and may skip.
-  // Errors: the picture has another size than those learned from; given masks that end, break or have another size.
+  // The observation of picture number `index` of the video, [H, W, 3] B, G, R. Indices rise from call to call and may
+  // skip. Errors: the picture has another size than those learned from; given masks that end, break or have another
+  // size.
   virtual Result<Observation> segment(const ByteImage& image, int64_t index) = 0;
 
   // Does the part of segment() that does not need the expected silhouette; segment() of that picture then takes less

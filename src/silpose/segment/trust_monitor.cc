@@ -18,12 +18,14 @@ constexpr double kTrustAtBorder = 0.5, kTrustAfterJump = 0.25;
 Observation TrustMonitor::judge(Mask mask, ByteImage confidence) {
   Observation result;
   Trust& trust = result.trust;
+  if (ignored_) mask = without(std::move(mask), *ignored_);  // refined edges and growth reach into them
   const int64_t area = mask.count();
   const Box box = mask.bounding_box();
   trust.nothing_found = area == 0;
   trust.touches_border = area > 0 && (box.x == 0 || box.y == 0 || box.x + box.width == mask.width() ||
                                       box.y + box.height == mask.height());
-  if (area > 0) {
+  // Who walks behind ignored pixels is seen smaller, and no less reliably.
+  if (area > 0 && !(ignored_ && are_adjacent(mask, *ignored_))) {
     if (recent_areas_.size() >= kLeast) {
       const auto usual =
           static_cast<double>(upper_median(std::vector<int64_t>(recent_areas_.begin(), recent_areas_.end())));

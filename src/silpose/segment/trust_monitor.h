@@ -18,7 +18,7 @@ class TrustMonitor {
   // `ignored`: pixels that no mask says anything about; null: none.
   explicit TrustMonitor(std::shared_ptr<const Mask> ignored = {}) : ignored_(std::move(ignored)) {}
 
-  // Judges the masks of a video in their order.
+  // Judges the masks of a video in their order; ignored pixels are removed from them.
   Observation judge(Mask mask, ByteImage confidence = {});
 
   [[nodiscard]] const std::shared_ptr<const Mask>& ignored() const { return ignored_; }

@@ -54,5 +54,23 @@ TEST(TrustMonitor, AJumpIsDoubtedUntilItLasts) {
   EXPECT_LE(doubted, 10);
 }
 
+TEST(TrustMonitor, WhoWalksBehindIgnoredPixelsDoesNotJump) {
+  Mask post(100, 80);
+  for (int y = 0; y < 80; ++y) {
+    for (int x = 40; x < 50; ++x) post.set(x, y);
+  }
+  TrustMonitor monitor(std::make_shared<const Mask>(post));
+  for (int i = 0; i < 10; ++i) EXPECT_FALSE(monitor.judge(square(20, 2, 20)).trust.area_jumped);
+  Mask half(100, 80);
+  for (int y = 20; y < 40; ++y) {
+    for (int x = 34; x < 40; ++x) half.set(x, y);
+  }
+  const Observation seen = monitor.judge(half);
+  EXPECT_FALSE(seen.trust.area_jumped);
+  EXPECT_EQ(seen.trust.overall, 1);
+  EXPECT_EQ(seen.ignored, monitor.ignored());
+  EXPECT_TRUE(monitor.judge(square(9, 2, 20)).trust.area_jumped) << "in the open";
+}
+
 }  // namespace
 }  // namespace silpose

@@ -38,8 +38,8 @@ constexpr double kMaxRotation = 0.35;  // radians a step
 constexpr size_t kInstants = 16;       // [guess] of the clip, evenly spread: neighbours carry the same information
 // Errors of masks and networks are correlated between instants: all instants together count as this many independent
 // ones.
-// [tuned: simulated people; measured on others: docs/results.md, "Real people": 1, 2 and 4 are similar, with 8 and 16
-// single tracks get much worse]
+// [tuned: simulated people; measured on others: docs/results.md, "Real people": 4 has the smallest errors; with 2, 8
+// and 16 single tracks get much worse]
 constexpr double kIndependentInstants = 4;
 constexpr double kStatureDeviation = 0.01;  // [guess] of a given stature, relative: shoes, posture
 // Of a size by the floor, relative: as far as rendered subjects were off (docs/results.md).

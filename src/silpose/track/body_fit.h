@@ -36,7 +36,8 @@ struct BodyFit {
 };
 
 // Fits the body of `options` with their cameras, floor, evidence and size_deviation. `poses` [T][D] are those of the
-// clip's instants, tracked as options_before_fit() says; empty: none. About 16 instants are used, evenly spread.
+// clip's instants, tracked as options_before_fit() says; empty: none. About 16 instants are used, evenly spread, and no
+// keypoints of frames in which the network exchanged left and right (judged_clip.h).
 // Several cameras: instants in which at least two see the subject. One camera: first the size by the floor, where it is
 // known and the height is not; then lengths and girths from instants with 3D keypoints, at the same stature up to
 // size_deviation. Lengths stay within three prior deviations (body/stretchable.h).

@@ -36,7 +36,7 @@ double clarity(const ClipInstant& instant) {
   for (const Observation& o : instant.observations) {
     if (o.trust.nothing_found || o.box().empty()) continue;
     const double area = static_cast<double>(o.mask.count());
-    sum += o.trust.overall * (o.trust.touches_border ? 0.5 : 1) * outline_length(o.mask) / std::sqrt(area);
+    sum += o.trust.overall * (o.trust.touches_border ? 0.5 : 1) * outline_length(o) / std::sqrt(area);
   }
   return sum;
 }

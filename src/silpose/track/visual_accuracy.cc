@@ -5,8 +5,9 @@ namespace silpose {
 double visual_accuracy(std::span<const BatchRenderer> renderers, std::span<const Observation> observations,
                        std::span<const double> pose) {
   for (size_t c = 0; c < observations.size(); ++c) {
-    if (observations[c].trust.nothing_found) continue;
-    return intersection_over_union(renderers[c].silhouette(pose), observations[c].mask);
+    const Observation& seen = observations[c];
+    if (seen.trust.nothing_found) continue;
+    return intersection_over_union(seen.known(renderers[c].silhouette(pose)), seen.known(seen.mask));
   }
   return 0;
 }

@@ -8,7 +8,8 @@
 
 namespace silpose {
 
-// Intersection over union of a pose's silhouette and the mask of the first camera that found something; 0 without one.
+// Intersection over union of a pose's silhouette and the mask of the first camera that found something, without the
+// pixels that it ignores; 0 without one.
 // Shapes: one renderer of the body and one observation per camera.
 double visual_accuracy(std::span<const BatchRenderer> renderers, std::span<const Observation> observations,
                        std::span<const double> pose);

@@ -18,6 +18,8 @@ struct Video::Impl {
     std::unique_ptr<FrameSource> source;
     std::optional<Picture> picture;
     int width = 0, height = 0;
+    double fps = 0;  // 0: unknown. These two as they were after the first picture: a rewound source may forget them.
+    int64_t hint = 0;
     int64_t num_read = 0;
 
     // Reads the next picture. False: there is none.
@@ -25,8 +27,16 @@ struct Video::Impl {
       Result<std::optional<Picture>> next = source->next();
       if (!next) return next.failure();
       picture = std::move(*next);
-      num_read += picture ? 1 : 0;
-      return picture.has_value();
+      if (!picture) return false;
+      ++num_read;
+      if (picture->image.channels() != 3) {
+        return error("{}: an image of {} channels, not of 3", source->name(), picture->image.channels());
+      }
+      const std::span<const int64_t> numbers = source->numbers();
+      if (!numbers.empty() && std::ssize(numbers) < num_read) {
+        return error("{}: {} numbers for more images", source->name(), numbers.size());
+      }
+      return true;
     }
     // Nothing to do where the first picture was only read ahead: a file need not be opened again.
     Result<void> rewind() {
@@ -51,6 +61,8 @@ struct Video::Impl {
     if (!*first) return error("{}: not a video, or no frame in it can be decoded", camera->source->name());
     camera->width = camera->picture->image.width();
     camera->height = camera->picture->image.height();
+    camera->fps = camera->source->fps();
+    camera->hint = camera->source->num_frames_hint();
     return camera;
   }
 
@@ -181,15 +193,15 @@ Result<void> Video::rewind() {
   return {};
 }
 
-Video Video::alone(int camera) const {
+Video Video::alone(int camera) {
   auto impl = std::make_unique<Impl>();
   impl->cameras = {impl_->cameras.at(static_cast<size_t>(camera))};
-  const FrameSource& source = *impl->cameras[0]->source;
-  impl->name = source.name();
-  impl->fps = source.fps() > 0 ? source.fps() : impl_->fps;
-  impl->fps_assumed = source.fps() == 0 && impl_->fps_assumed;
-  impl->live = source.is_live();
-  impl->hint = source.num_frames_hint();
+  const Impl::Camera& own = *impl->cameras[0];
+  impl->name = own.source->name();
+  impl->fps = own.fps > 0 ? own.fps : impl_->fps;
+  impl->fps_assumed = own.fps == 0 && impl_->fps_assumed;
+  impl->live = own.source->is_live();
+  impl->hint = own.hint;
   impl->take_numbers();
   return Video(std::move(impl));
 }
@@ -199,16 +211,17 @@ Result<Video> join_sources(std::vector<std::unique_ptr<FrameSource>> sources, co
   check(options.default_fps > 0, "join_sources: default_fps is {}", options.default_fps);
   auto impl = std::make_unique<Video::Impl>();
   for (std::unique_ptr<FrameSource>& source : sources) {
+    check(source != nullptr, "join_sources: a null source");
     auto begun = Video::Impl::begin(std::move(source));
     if (!begun) return begun.failure();
     const FrameSource& begun_source = *(*begun)->source;
-    const double rate = begun_source.fps();
+    const double rate = (*begun)->fps;
     if (rate > 0 && impl->fps > 0 && std::abs(rate - impl->fps) > 0.1 * impl->fps) {
       return error("{}: {:.3f} frames per second, the inputs before it {:.3f}", begun_source.name(), rate, impl->fps);
     }
     if (impl->fps == 0) impl->fps = rate;
     impl->live = impl->live || begun_source.is_live();
-    const int64_t hint = begun_source.num_frames_hint();
+    const int64_t hint = (*begun)->hint;
     impl->hint = impl->hint == 0 ? hint : std::min(impl->hint, hint);
     impl->name += (impl->name.empty() ? "" : " ") + begun_source.name();
     impl->cameras.push_back(std::move(*begun));

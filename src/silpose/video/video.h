@@ -1,6 +1,6 @@
 // Video in and out: a file, a directory of pictures, a printf pattern or a camera, read as Frames; H.264 written.
 // Based on: FFmpeg for files, OpenCV's videoio for live cameras.
-// Threads: one thread per Video or VideoWriter.
+// Threads: one thread per VideoWriter, and per Video with those that its alone() gave.
 #pragma once
 
 #include <cstdint>
@@ -60,7 +60,7 @@ class Video {
 
   // The frames of one camera alone, from the same source: reading either moves both. REQUIRES: rewind() before the
   // first frame of it, and again before the next frame of this one.
-  [[nodiscard]] Video alone(int camera) const;
+  [[nodiscard]] Video alone(int camera);
 
   // Range-for over the frames left. Errors: throws std::runtime_error where next() would return an error.
   class Iterator {

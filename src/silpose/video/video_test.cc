@@ -373,5 +373,52 @@ TEST(JoinedSources, OneOfThemAlone) {
   EXPECT_EQ(count, 4);
 }
 
+TEST(JoinedSources, RewoundAfterTheFirstFrame) {
+  std::vector<ByteImage> images;
+  for (const int grey : {10, 20, 30}) images.emplace_back(4, 3, 3, static_cast<uint8_t>(grey));
+  std::vector<std::unique_ptr<FrameSource>> sources;
+  sources.push_back(std::make_unique<MemorySource>(std::move(images), 30));
+  Video video = join_sources(std::move(sources)).value();
+  for (int num_read = 0; num_read < 4; ++num_read) {
+    for (int i = 0; i < num_read; ++i) (void)video.next().value();
+    video.rewind().value();
+    const std::optional<Frame> again = video.next().value();
+    EXPECT_EQ(again.value().images[0].at(0, 0), 10) << num_read;
+    EXPECT_EQ(again->index, 0);
+    video.rewind().value();
+  }
+}
+
+// Sources of a program's own may be wrong.
+class BadSource : public MemorySource {
+ public:
+  explicit BadSource(bool few_numbers) : MemorySource({ByteImage(4, 3, 3), ByteImage(4, 3, 3)}), few_(few_numbers) {}
+  Result<std::optional<Picture>> next() override {
+    auto picture = MemorySource::next();
+    if (!few_ && picture && picture->has_value()) (*picture)->image = ByteImage(4, 3, 1);
+    return picture;
+  }
+  [[nodiscard]] std::span<const int64_t> numbers() const override {
+    return few_ ? std::span<const int64_t>(&one_, 1) : std::span<const int64_t>();
+  }
+
+ private:
+  bool few_;
+  int64_t one_ = 5;
+};
+
+TEST(JoinedSources, ReportWhatASourceDoesWrong) {
+  std::vector<std::unique_ptr<FrameSource>> sources;
+  sources.push_back(std::make_unique<BadSource>(false));
+  EXPECT_THAT(join_sources(std::move(sources)).error().message, HasSubstr("memory: an image of 1 channels, not of 3"));
+  sources.clear();
+  sources.push_back(std::make_unique<BadSource>(true));
+  Video video = join_sources(std::move(sources)).value();
+  EXPECT_TRUE(video.next().value().has_value());
+  EXPECT_THAT(video.next().error().message, HasSubstr("memory: 1 numbers for more images"));
+  sources.clear();
+  EXPECT_THROW((void)join_sources(std::move(sources)), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace silpose
