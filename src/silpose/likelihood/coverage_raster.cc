@@ -31,7 +31,7 @@ int count_set(std::span<const uint64_t> words, int begin, int end) {
 // is observed becomes the share of those that are known: a body that covers the whole cell agrees with it.
 void add_weights(const Observation& observation, CoverageEvidence::Raster& raster) {
   const int width = observation.mask.width(), height = observation.mask.height(), cell = raster.cell;
-  const float one_weight = 1.0f / (255.0f * static_cast<float>(cell * cell));
+  const float one_weight = 1.0f / static_cast<float>(cell * cell) / 255.0f;
   raster.confidence.resize(raster.observed.size());
   std::vector<uint8_t> weights(static_cast<size_t>(width), 255), ignored(weights.size(), 0);
   std::vector<int> num_ignored(static_cast<size_t>(raster.width));
