@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
     std::vector<std::unique_ptr<silpose::FrameSource>> sources;  // one per camera
     sources.push_back(std::make_unique<silpose::MemorySource>(std::move(images), std::atof(argv[4])));
     auto frames = silpose::join_sources(std::move(sources)).value();
-    const auto segmenter = silpose::make_segmenter(frames).value();  // here by what the frames are
+    const auto segmenter = silpose::make_segmenter(frames).value();  // the kind follows from the frames
     frames.rewind().value();
 
     const auto body = std::make_shared<silpose::BodyModel>(silpose::load_body(argv[1]).value());

@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
     const auto body = std::make_shared<silpose::BodyModel>(silpose::load_body(argv[1]).value());
     const auto cameras = silpose::load_cameras(argv[2]).value();
     auto video = silpose::open_video(argv[3]).value();
-    const auto segmenter = silpose::make_segmenter(video).value();  // by a background that it learns from the clip
+    const auto segmenter = silpose::make_segmenter(video).value();  // learns the background from the clip
     video.rewind().value();
     silpose::Tracker tracker({.body = body, .cameras = cameras, .seed = 1});
     for (const silpose::Frame& frame : video) {

@@ -228,30 +228,18 @@ std::vector<std::string> citation_violations(const fs::path& root) {
   return violations;
 }
 
-std::vector<std::string> wording_violations(const fs::path& root) {
-  struct Idiom {
-    std::string stem;  // in lower case: a quick test before the expression
-    std::regex pattern;
-    std::string better;
-  };
-  static const std::array<Idiom, 6> kIdioms = {{
-      {"anew", std::regex(R"(\banew\b|_anew\b)"), "again, from scratch"},
-      {"late", std::regex(R"(\bof[ _]late\b)"), "recent, recently"},
-      {"say", std::regex(R"(\b(has|have|had)[ _]a[ _]say\b)"), "counts, is used"},
-      {"sought", std::regex(R"(\bsought\b)"), "searched, re-initialised"},
-      {" on ", std::regex(R"(\b(go|goes|going|gone) on (from|with)\b)"), "resume, continue"},
-      {"in ", std::regex(R"(\bin (vain|sight of)\b)"), "without success; known"},
-  }};
+std::vector<std::string> wording_violations(const fs::path& root, const Phrases& phrases) {
+  const auto is_letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
   std::vector<std::string> violations;
   const auto visit = [&](const fs::path& file, int number, const std::string& line) {
     if (file.generic_string().starts_with("tests/layering/")) return;
     std::string lower = line;
     std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const Idiom& idiom : kIdioms) {
-      std::smatch found;
-      if (lower.find(idiom.stem) != std::string::npos && std::regex_search(lower, found, idiom.pattern)) {
-        violations.push_back(at(file, number, "'" + found.str() + "': write: " + idiom.better));
-      }
+    for (const auto& [phrase, better] : phrases) {
+      const size_t at_char = lower.find(phrase), end = at_char + phrase.size();
+      if (at_char == std::string::npos) continue;
+      if ((at_char > 0 && is_letter(lower[at_char - 1])) || (end < lower.size() && is_letter(lower[end]))) continue;
+      violations.push_back(at(file, number, "'" + phrase + "': write: " + better));
     }
   };
   const std::set<std::string> extensions = {".h", ".cc", ".md", ".toml", ".sh", "", ".js", ".py"};

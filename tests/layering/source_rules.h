@@ -33,8 +33,11 @@ std::vector<std::string> folder_violations(const std::filesystem::path& root);
 // ROOT/{src,apps,bench,examples} that ROOT/docs/references.bib does not hold.
 std::vector<std::string> citation_violations(const std::filesystem::path& root);
 
-// Idioms that a native engineer stumbles over, with what to write instead: in the C++, Markdown, TOML and shell files
-// of ROOT and of ROOT/{src,apps,bench,examples,scripts,docs,experiments,tests}. The folder of this rule is left out.
-std::vector<std::string> wording_violations(const std::filesystem::path& root);
+// Phrases that are not the field's terms, in lower case, each with what to write instead.
+using Phrases = std::map<std::string, std::string, std::less<>>;
+
+// Where such phrases occur as whole words, in any case: in the C++, Markdown, TOML, JavaScript, Python and shell files
+// of ROOT and of ROOT/{src,apps,bench,examples,scripts,docs,experiments,tests}, but for ROOT/tests/layering.
+std::vector<std::string> wording_violations(const std::filesystem::path& root, const Phrases& phrases);
 
 }  // namespace silpose

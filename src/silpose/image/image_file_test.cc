@@ -5,6 +5,8 @@
 
 #include <fstream>
 
+#include "silpose/base/folder_for_test.h"
+
 namespace silpose {
 namespace {
 
@@ -12,18 +14,7 @@ namespace fs = std::filesystem;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-class ImageFileTest : public testing::Test {
- protected:
-  ImageFileTest() {
-    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("silpose_image_file_" + std::string(info->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~ImageFileTest() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
-};
+using ImageFileTest = FolderTest;
 
 ByteImage gradient(int width, int height, int channels) {
   ByteImage image(width, height, channels);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "silpose/image/image.h"
@@ -35,8 +36,8 @@ struct Observation {
   // The smallest box around the mask; empty where nothing was found.
   [[nodiscard]] Box box() const { return mask.bounding_box(); }
   // A silhouette without the ignored pixels. REQUIRES: of the mask's size.
-  [[nodiscard]] Mask known(const Mask& silhouette) const {
-    return ignored ? without(silhouette, *ignored) : silhouette;
+  [[nodiscard]] Mask known(Mask silhouette) const {
+    return ignored ? without(std::move(silhouette), *ignored) : silhouette;
   }
 };
 

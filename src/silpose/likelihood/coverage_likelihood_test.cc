@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "silpose/base/simd_targets.h"
-#include "silpose/body/human.h"
+#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
 #include "silpose/likelihood/coverage_difference.h"
 #include "silpose/likelihood/coverage_raster.h"
@@ -23,11 +23,6 @@ Observation observation_of(Mask mask) {
 }
 
 std::shared_ptr<const BodyModel> small_body() { return std::make_shared<const BodyModel>(make_test_body()); }
-
-std::shared_ptr<const BodyModel> human() {
-  const auto data = MakeHumanData::load(std::string(SILPOSE_DATA_DIR) + "/makehuman").value();
-  return std::make_shared<const BodyModel>(level_of_detail(build_human(data, {}).value(), 4000));
-}
 
 // A pose with every angle bent a little, standing.
 // `apart`: arms and legs off the body. Where limbs overlap, ends of spans come and go, and E has steps that no
@@ -126,7 +121,7 @@ class CoverageDerivative : public testing::TestWithParam<DerivativeCase> {};
 // Against central differences, for every DOF. E has small steps where an end comes or goes on a sampled row: here rows
 // are fine.
 TEST_P(CoverageDerivative, AgreesWithFiniteDifferences) {
-  const auto body = GetParam().is_human ? human() : small_body();
+  const auto body = GetParam().is_human ? human_for_test(4000) : small_body();
   std::vector<PinholeCamera> cameras = {look_at_camera(640, 480, 600, {0.5, 1.2, 3.5}, {0, 0.9, 0})};
   if (GetParam().num_cameras > 1) cameras.push_back(look_at_camera(640, 480, 600, {3.5, 1.2, 0.5}, {0, 0.9, 0}));
   for (PinholeCamera& camera : cameras)
@@ -165,7 +160,7 @@ INSTANTIATE_TEST_SUITE_P(Bodies, CoverageDerivative,
 // Against every triangle by itself, in double precision; also where the picture cuts the body off, and where little of
 // it is trusted.
 TEST_P(CoverageDerivative, AgreesWithThePlainReference) {
-  const auto body = GetParam().is_human ? human() : small_body();
+  const auto body = GetParam().is_human ? human_for_test(4000) : small_body();
   std::vector<PinholeCamera> cameras = {look_at_camera(320, 240, 300, {0.5, 1.2, 3.5}, {0, 0.9, 0})};
   if (GetParam().num_cameras > 1) cameras.push_back(look_at_camera(320, 240, 300, {1.5, 1.2, 0.5}, {0, 0.9, 0}));
   for (PinholeCamera& camera : cameras)
@@ -203,54 +198,55 @@ TEST_P(CoverageDerivative, AgreesWithThePlainReference) {
   }
 }
 
-TEST(CoverageLikelihood, IgnoresWhereItIsNotConfident) {
-  const auto body = small_body();
-  const PinholeCamera camera = look_at_camera(320, 240, 350, {0, 1, 3.5}, {0, 1, 0});
-  const CoverageLikelihood likelihood(body, {camera});
-  CoverageLikelihood::Scratch scratch(likelihood);
-  const std::vector<double> truth = bent_pose(*body, 0.3);
-  Observation observation = observation_of(render_silhouette(*body, camera, truth));
+// A body that one camera sees in a known pose.
+class OneViewTest : public ::testing::Test {
+ protected:
+  [[nodiscard]] double energy(const Observation& seen, Blur blur = Blur::k4) {
+    return likelihood_.energy(likelihood_.prepare(std::vector{seen}), blur, truth_, scratch_);
+  }
+
+  std::shared_ptr<const BodyModel> body_ = small_body();
+  PinholeCamera camera_ = look_at_camera(320, 240, 300, {0, 1, 3.5}, {0, 0.75, 0});
+  CoverageLikelihood likelihood_{body_, {camera_}};
+  CoverageLikelihood::Scratch scratch_{likelihood_};
+  std::vector<double> truth_ = bent_pose(*body_, 0.3);
+  Observation whole_ = observation_of(render_silhouette(*body_, camera_, truth_));
+};
+
+TEST_F(OneViewTest, IgnoresWhereItIsNotConfident) {
+  Observation observation = whole_;
   for (int y = 0; y < 60; ++y) {
     for (int x = 0; x < 80; ++x) observation.mask.set(x, y);
   }
-  const double fooled = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
+  const double fooled = energy(observation);
   Mask ignored(320, 240);
   observation.confidence = ByteImage(320, 240, 1, 255);
   for (int y = 0; y < 60; ++y) {
     for (int x = 0; x < 80; ++x) observation.confidence.at(x, y) = 0, ignored.set(x, y);
   }
-  const double doubted = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
+  const double doubted = energy(observation);
   EXPECT_LT(doubted, 0.6 * fooled);
   EXPECT_GT(doubted, 0.1 * fooled) << "doubtful pixels keep half of their weight";
   observation.confidence = {};
   observation.ignored = std::make_shared<const Mask>(ignored);
-  const double warned = likelihood.energy(likelihood.prepare(std::vector{observation}), Blur::k4, truth, scratch);
+  const double warned = energy(observation);
   EXPECT_LT(warned, 0.01 * fooled);
 }
 
 // An occluder across the body, whose edges cut through cells: what is behind it neither pulls nor counts as outline.
-TEST(CoverageLikelihood, ABodyBehindIgnoredPixelsStaysWhereItIs) {
-  const auto body = small_body();
-  const PinholeCamera camera = look_at_camera(320, 240, 300, {0, 1, 3.5}, {0, 0.75, 0});
-  const CoverageLikelihood likelihood(body, {camera});
-  CoverageLikelihood::Scratch scratch(likelihood);
-  const std::vector<double> truth = bent_pose(*body, 0.3);
-  Observation observation = observation_of(render_silhouette(*body, camera, truth));
-  const Box box = observation.box();
-  const auto seen = likelihood.prepare(std::vector{observation});
-  Mask ignored(320, 240);
+TEST_F(OneViewTest, ABodyBehindIgnoredPixelsStaysWhereItIs) {
+  Observation cut = whole_;
+  const Box box = whole_.box();
+  Mask occluder(320, 240);
   for (int y = box.y + box.height / 3; y < box.y + box.height / 3 + 21; ++y) {
-    for (int x = 0; x < 320; ++x) ignored.set(x, y), observation.mask.set(x, y, false);
+    for (int x = 0; x < 320; ++x) occluder.set(x, y), cut.mask.set(x, y, false);
   }
-  const auto cut = likelihood.prepare(std::vector{observation});
-  observation.ignored = std::make_shared<const Mask>(ignored);
-  const auto known = likelihood.prepare(std::vector{observation});
-  EXPECT_LT(known.views[0].outline_length, seen.views[0].outline_length);
+  Observation known = cut;
+  known.ignored = std::make_shared<const Mask>(occluder);
+  EXPECT_LT(outline_length(known), outline_length(whole_));
   for (const Blur blur : {Blur::k2, Blur::k4, Blur::k8}) {
-    const double whole = likelihood.energy(seen, blur, truth, scratch);
-    const double fooled = likelihood.energy(cut, blur, truth, scratch);
-    const double warned = likelihood.energy(known, blur, truth, scratch);
-    EXPECT_LT(warned, whole + 0.05 * (fooled - whole)) << static_cast<int>(blur);
+    const double whole = energy(whole_, blur), fooled = energy(cut, blur);
+    EXPECT_LT(energy(known, blur), whole + 0.05 * (fooled - whole)) << static_cast<int>(blur);
   }
 }
 

@@ -65,7 +65,8 @@ void add_weights(const Observation& observation, CoverageEvidence::Raster& raste
 CoverageEvidence::Raster coverage_raster(const Observation& observation, int cell) {
   check(cell > 0, "coverage_raster: cells of {} pixels", cell);
   check_sizes(observation);
-  const Mask known = observation.known(observation.mask);
+  const Mask cut = observation.ignored ? observation.known(observation.mask) : Mask();
+  const Mask& known = observation.ignored ? cut : observation.mask;
   CoverageEvidence::Raster raster;
   raster.cell = cell;
   raster.width = cells_along(known.width(), cell);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "silpose/base/folder_for_test.h"
 #include "silpose/image/memory_source.h"
 #include "silpose/segment/scene_for_test.h"
 
@@ -18,7 +19,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// A clip of pictures at 10 frames per second: frames 0-9 empty, then the subject walks through, 5 pixels per frame.
 Result<std::unique_ptr<Segmenter>> make_of(const std::string& input, const SegmenterOptions& options = {},
                                            double default_fps = 30, ProgressSink* progress = nullptr) {
   Result<Video> video = open_video(input, {.default_fps = default_fps});
@@ -26,20 +26,17 @@ Result<std::unique_ptr<Segmenter>> make_of(const std::string& input, const Segme
   return make_segmenter(*video, options, progress);
 }
 
-class MakeSegmenterTest : public testing::Test {
+// A clip of pictures at 10 frames per second: frames 0-9 empty, then the subject walks through, 5 pixels per frame.
+class MakeSegmenterTest : public FolderTest {
  protected:
   static constexpr int kEmpty = 10, kFrames = 50;
 
   MakeSegmenterTest() {
-    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("silpose_segmenter_" + std::string(info->name()));
-    fs::remove_all(folder_);
     fs::create_directories(folder_ / "clip");
     for (int i = 0; i < kFrames; ++i) {
       write_image(folder_ / "clip" / fmt::format("{:03}.png", i), picture(i)).value();
     }
   }
-  ~MakeSegmenterTest() override { fs::remove_all(folder_); }
 
   [[nodiscard]] static int place(int index) { return index < kEmpty ? -100 : -20 + 5 * (index - kEmpty); }
   [[nodiscard]] ByteImage picture(int index) const {
@@ -73,7 +70,6 @@ class MakeSegmenterTest : public testing::Test {
   }
 
   TestScene scene_;
-  fs::path folder_;
 };
 
 TEST_F(MakeSegmenterTest, BackgroundOfTheWholeClip) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "silpose/base/folder_for_test.h"
 #include "silpose/base/rng.h"
 #include "silpose/segment/tflite_bytes_for_test.h"
 
@@ -16,15 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class TfliteNetworkTest : public testing::Test {
+class TfliteNetworkTest : public FolderTest {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              (std::string("silpose_tflite_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   [[nodiscard]] fs::path written(const std::string& bytes) const {
     const fs::path path = folder_ / "net.tflite";
     std::ofstream(path, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
@@ -35,7 +29,6 @@ class TfliteNetworkTest : public testing::Test {
     const auto network = TfliteNetwork::load(written(bytes), {"out"});
     return network ? "" : network.error().message;
   }
-  fs::path folder_;
 };
 
 std::vector<float> random_values(size_t count, uint64_t seed) {

@@ -18,13 +18,13 @@ constexpr double kTrustAtBorder = 0.5, kTrustAfterJump = 0.25;
 Observation TrustMonitor::judge(Mask mask, ByteImage confidence) {
   Observation result;
   Trust& trust = result.trust;
-  if (ignored_) mask = without(std::move(mask), *ignored_);  // refined edges and growth reach into them
+  if (ignored_) mask = without(std::move(mask), *ignored_);  // refined edges and --grow may reach into them
   const int64_t area = mask.count();
   const Box box = mask.bounding_box();
   trust.nothing_found = area == 0;
   trust.touches_border = area > 0 && (box.x == 0 || box.y == 0 || box.x + box.width == mask.width() ||
                                       box.y + box.height == mask.height());
-  // Who walks behind ignored pixels is seen smaller, and no less reliably.
+  // Partly hidden behind ignored pixels the subject has a smaller area, which is no reason for less trust.
   if (area > 0 && !(ignored_ && are_adjacent(mask, *ignored_))) {
     if (recent_areas_.size() >= kLeast) {
       const auto usual =

@@ -54,7 +54,7 @@ TEST(TrustMonitor, AJumpIsDoubtedUntilItLasts) {
   EXPECT_LE(doubted, 10);
 }
 
-TEST(TrustMonitor, WhoWalksBehindIgnoredPixelsDoesNotJump) {
+TEST(TrustMonitor, HidingBehindIgnoredPixelsIsNoJump) {
   Mask post(100, 80);
   for (int y = 0; y < 80; ++y) {
     for (int x = 40; x < 50; ++x) post.set(x, y);

@@ -7,7 +7,9 @@ double visual_accuracy(std::span<const BatchRenderer> renderers, std::span<const
   for (size_t c = 0; c < observations.size(); ++c) {
     const Observation& seen = observations[c];
     if (seen.trust.nothing_found) continue;
-    return intersection_over_union(seen.known(renderers[c].silhouette(pose)), seen.known(seen.mask));
+    const Mask silhouette = renderers[c].silhouette(pose);
+    if (!seen.ignored) return intersection_over_union(silhouette, seen.mask);
+    return intersection_over_union(seen.known(silhouette), seen.known(seen.mask));
   }
   return 0;
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "silpose/base/folder_for_test.h"
 #include "silpose/image/image_file.h"
 #include "silpose/video/clip_for_test.h"
 #include "silpose/video/video.h"
@@ -46,16 +47,8 @@ std::string clockwise(const ByteImage& image) {
   return found;
 }
 
-class VideoFileTest : public testing::Test {
+class VideoFileTest : public FolderTest {
  protected:
-  VideoFileTest() {
-    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("silpose_file_" + std::string(info->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~VideoFileTest() override { fs::remove_all(folder_); }
-
   std::string write(const std::string& name, const ClipForTest& clip, int frames = 3, int width = 64,
                     int height = 48) const {
     const std::vector<ByteImage> pictures(static_cast<size_t>(frames), corners(width, height));
@@ -68,8 +61,6 @@ class VideoFileTest : public testing::Test {
     for (const Frame& frame : video) times.push_back(std::llround(static_cast<double>(frame.time_ns) * 1e-6));
     return times;
   }
-
-  fs::path folder_;
 };
 
 constexpr int32_t kOne = 1 << 16, kLast = 1 << 30;

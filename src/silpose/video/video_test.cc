@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <fstream>
 
+#include "silpose/base/folder_for_test.h"
 #include "silpose/image/image_file.h"
 #include "silpose/image/memory_source.h"
 
@@ -26,16 +27,8 @@ ByteImage picture(int index, int width = 64, int height = 48) {
   return image;
 }
 
-class VideoTest : public testing::Test {
+class VideoTest : public FolderTest {
  protected:
-  VideoTest() {
-    const testing::TestInfo* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() / ("silpose_video_" + std::string(info->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  ~VideoTest() override { fs::remove_all(folder_); }
-
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
   [[nodiscard]] std::string write_clip(const std::string& name, int frames, double fps, int width = 64,
@@ -51,8 +44,6 @@ class VideoTest : public testing::Test {
       write_image(at(fmt::format(fmt::runtime(format), i)), picture(i % 12)).value();
     }
   }
-
-  fs::path folder_;
 };
 
 int64_t count_frames(Video& video) {
