@@ -8,7 +8,7 @@ set(SILPOSE_FLOORS
   likelihood=4 synth=4
   track=5 evaluate=5
   recording=6
-  experiment=7 report=7)
+  session=7 experiment=7 report=7)
 
 function(silpose_floor_of NAME OUT)
   foreach(entry IN LISTS SILPOSE_FLOORS)

@@ -26,16 +26,15 @@ int main(int argc, char** argv) {
 
     std::vector<std::unique_ptr<silpose::FrameSource>> sources;  // one per camera
     sources.push_back(std::make_unique<silpose::MemorySource>(std::move(images), std::atof(argv[4])));
-    auto frames = silpose::join_sources(std::move(sources)).value();
-    const auto segmenter = silpose::make_segmenter(frames).value();  // the kind follows from the frames
-    frames.rewind().value();
+    // What the frames show decides how the person is cut out of them; SourceOptions says it otherwise.
+    auto source = silpose::ObservationSource::open(silpose::join_sources(std::move(sources)).value()).value();
 
-    const auto body = std::make_shared<silpose::BodyModel>(silpose::load_body(argv[1]).value());
-    silpose::Tracker tracker({.body = body, .cameras = silpose::load_cameras(argv[2]).value(), .seed = 1});
-    for (const silpose::Frame& frame : frames) {
-      const silpose::Observation seen = segmenter->segment(frame.images[0], frame.index).value();
-      const silpose::StepReport report = tracker.step({&seen, 1}, frame.index, frame.time_ns);
-      fmt::print("{} {:.4f} {:.4f}\n", frame.index, report.time_s(), report.visual_accuracy);
+    silpose::TrackerOptions tracker;
+    tracker.body = std::make_shared<silpose::BodyModel>(silpose::load_body(argv[1]).value());
+    tracker.cameras = silpose::load_cameras(argv[2]).value();
+    silpose::Session session(*source, {.tracker = std::move(tracker)});
+    while (const auto report = session.next().value()) {
+      fmt::print("{} {:.4f} {:.4f}\n", report->frame_idx, report->time_s(), report->visual_accuracy);
     }
   } catch (const std::exception& failure) {
     fmt::print(stderr, "track_frames: {}\n", failure.what());

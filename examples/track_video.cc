@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <memory>
+#include <utility>
 
 int main(int argc, char** argv) {
   if (argc != 4) {
@@ -11,16 +12,14 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    const auto body = std::make_shared<silpose::BodyModel>(silpose::load_body(argv[1]).value());
-    const auto cameras = silpose::load_cameras(argv[2]).value();
-    auto video = silpose::open_video(argv[3]).value();
-    const auto segmenter = silpose::make_segmenter(video).value();  // learns the background from the clip
-    video.rewind().value();
-    silpose::Tracker tracker({.body = body, .cameras = cameras, .seed = 1});
-    for (const silpose::Frame& frame : video) {
-      const silpose::Observation seen = segmenter->segment(frame.images[0], frame.index).value();
-      const silpose::StepReport report = tracker.step({&seen, 1}, frame.index, frame.time_ns);
-      fmt::print("{:.3f} s  visual accuracy {:.2f}\n", report.time_s(), report.visual_accuracy);
+    // Learns the background from the clip, reads it again and tracks.
+    auto source = silpose::ObservationSource::open(silpose::open_video(argv[3]).value()).value();
+    silpose::TrackerOptions tracker;
+    tracker.body = std::make_shared<silpose::BodyModel>(silpose::load_body(argv[1]).value());
+    tracker.cameras = silpose::load_cameras(argv[2]).value();
+    silpose::Session session(*source, {.tracker = std::move(tracker)});
+    while (const auto report = session.next().value()) {
+      fmt::print("{:.3f} s  visual accuracy {:.2f}\n", report->time_s(), report->visual_accuracy);
     }
   } catch (const std::exception& failure) {
     fmt::print(stderr, "track_video: {}\n", failure.what());

@@ -5,10 +5,10 @@
 #include <cstdlib>
 #include <system_error>
 
-#include "apps/silpose/body_levels.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/result_directory.h"
+#include "silpose/base/whole_file.h"
 #include "silpose/body/human.h"
+#include "silpose/render/body_levels.h"
 
 namespace silpose::app {
 namespace {
@@ -101,7 +101,8 @@ Result<BodyModel> build_body(const std::string& model, Console& console) {
   if (!data) return data.failure();
   Result<BodyModel> body = build_human(*data, *phenotype);
   if (!body) return error("--model {}: {}", model, body.error().message);
-  add_levels(*body, console);
+  console.message("building its levels of detail");
+  add_levels(*body);
   return body;
 }
 

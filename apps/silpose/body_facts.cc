@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/silpose/result_directory.h"
+#include "silpose/base/whole_file.h"
 
 namespace silpose::app {
 

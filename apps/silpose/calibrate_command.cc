@@ -5,12 +5,12 @@
 #include <charconv>
 #include <memory>
 
-#include "apps/silpose/board_search.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/result_directory.h"
 #include "apps/silpose/run_facts.h"
+#include "silpose/base/whole_file.h"
 #include "silpose/calibrate/calibrate.h"
 #include "silpose/geometry/calibration_file.h"
+#include "silpose/session/board_search.h"
 
 namespace silpose::app {
 namespace {

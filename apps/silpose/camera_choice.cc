@@ -71,6 +71,13 @@ nlohmann::ordered_json facts_of(const FocalSource& source) {
   return {{"mean", focal.mean}, {"std", focal.deviation}, {"from", source.from}};
 }
 
+std::vector<PictureSize> sizes_of(const Video& video) {
+  std::vector<PictureSize> sizes;
+  sizes.reserve(static_cast<size_t>(video.num_cameras()));
+  for (int c = 0; c < video.num_cameras(); ++c) sizes.push_back({video.width(c), video.height(c), video.focal_mm35(c)});
+  return sizes;
+}
+
 Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<PictureSize>& sizes) {
   CameraChoice choice;
   if (options.focal_mm35 && options.fov_deg) throw UsageError("--focal-mm35: not together with --fov-deg");

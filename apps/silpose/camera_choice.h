@@ -1,4 +1,4 @@
-// Which cameras: those of a calibration file, or one assumed where no file is given (camera_estimate.h improves on it).
+// Which cameras: those of a calibration file, or one assumed where no file is given (clip_camera_choice.h improves on it).
 // Threads: the main thread only.
 #pragma once
 
@@ -12,6 +12,7 @@
 #include "silpose/calibrate/focal_prior.h"
 #include "silpose/calibrate/person_camera.h"
 #include "silpose/geometry/camera.h"
+#include "silpose/video/video.h"
 
 namespace silpose::app {
 
@@ -47,6 +48,9 @@ struct PictureSize {
   int width = 0, height = 0;
   std::optional<double> focal_mm35 = {};  // by the clip's metadata
 };
+
+// Of each camera of a video.
+std::vector<PictureSize> sizes_of(const Video& video);
 
 // One camera per picture size, in order, assumed where there is no file; without sizes all that the file, or
 // --camera-name, names. Errors: those of the file; a name that is not in it; another number of cameras; a camera

@@ -6,8 +6,8 @@
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/track_writer.h"
 #include "silpose/evaluate/evaluation.h"
+#include "silpose/session/result_files.h"
 
 namespace silpose::app {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/experiment_directory.h"
 #include "apps/silpose/run_facts.h"
 #include "silpose/experiment/engine.h"
+#include "silpose/experiment/experiment_directory.h"
 #include "silpose/experiment/recorded_clip.h"
 #include "silpose/experiment/results.h"
 #include "silpose/experiment/tracking_runs.h"

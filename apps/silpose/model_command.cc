@@ -6,10 +6,10 @@
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/body_facts.h"
-#include "apps/silpose/body_levels.h"
 #include "apps/silpose/command.h"
 #include "apps/silpose/model_fit.h"
 #include "silpose/geometry/rigid3.h"
+#include "silpose/render/body_levels.h"
 
 namespace silpose::app {
 namespace {
@@ -115,7 +115,10 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
          if (!body) return body.failure();
          if (options->vertices) return write_model(level_of_detail(**body, *options->vertices), options->out);
          BodyModel with_levels = **body;
-         if (!options->iou || with_levels.levels.empty()) add_levels(with_levels, console);
+         if (!options->iou || with_levels.levels.empty()) {
+           console.message("building its levels of detail");
+           add_levels(with_levels);
+         }
          if (!options->iou) return write_model(with_levels, options->out);
          const Result<const BodyLevel*> level = choose_level(with_levels, *options->iou);
          if (!level) return level.failure();

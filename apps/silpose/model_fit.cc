@@ -6,8 +6,10 @@
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/body_facts.h"
-#include "apps/silpose/observation_source.h"
-#include "apps/silpose/subject_fit.h"
+#include "apps/silpose/body_fit_facts.h"
+#include "apps/silpose/camera_choice.h"
+#include "apps/silpose/input_options.h"
+#include "silpose/track/track_clip.h"
 
 namespace silpose::app {
 namespace {
@@ -29,6 +31,24 @@ Result<std::vector<ClipInstant>> read_clip_of(ObservationSource& source, Console
   return clip;
 }
 
+// The subject's own body. Errors: the clip does not determine it; interrupted.
+Result<BodyFit> fit_to_clip(const TrackerOptions& tracker, const std::vector<ClipInstant>& clip,
+                            const std::string& name, Console& console) {
+  const auto progress = [&](size_t done, size_t total) {
+    return console.update("tracking the body as given", static_cast<int64_t>(done), static_cast<int64_t>(total));
+  };
+  std::vector<std::vector<double>> poses;
+  for (const StepReport& report : track_clip(options_before_fit(tracker), clip, progress)) poses.push_back(report.pose);
+  const int64_t total = std::ssize(clip);
+  std::optional<BodyFit> fit;
+  if (!Console::interrupted()) {
+    fit = fit_body(tracker, clip, poses, [&] { return console.update("fitting the body", total, total); });
+  }
+  if (Console::interrupted()) return error("interrupted: nothing is written");
+  if (!fit) return error("{}: no body fitted: {}", name, why_not_fitted(tracker));
+  return std::move(*fit);
+}
+
 Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, Console& console) {
   if (options.input.videos.empty()) throw UsageError("VIDEO is missing");
   if (!options.camera.has_file()) {
@@ -39,15 +59,17 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
     return error("--out {}: there is no folder {}", options.out, folder.string());
   const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
   if (!body) return body.failure();
-  Result<ObservationSource> source = ObservationSource::open(options.input);
-  if (!source) return source.failure();
-  const Result<CameraChoice> cameras = choose_cameras(options.camera, source->sizes());
+  Result<Video> video = open_input(options.input);
+  if (!video) return video.failure();
+  const Result<CameraChoice> cameras = choose_cameras(options.camera, sizes_of(*video));
   if (!cameras) return cameras.failure();
-  if (const Result<void> learned = source->learn(console); !learned) return learned.failure();
-  const Result<std::vector<ClipInstant>> clip = read_clip_of(*source, console);
+  const auto source = observations_of(std::move(*video), options.input, console);
+  if (!source) return source.failure();
+  const std::string name = (*source)->video().name();
+  const Result<std::vector<ClipInstant>> clip = read_clip_of(**source, console);
   if (!clip) return clip.failure();
   if (Console::interrupted()) return error("interrupted: nothing is written");
-  if (clip->empty()) return error("{}: no frame between --start and --end", source->video().name());
+  if (clip->empty()) return error("{}: no frame between --start and --end", name);
 
   TrackerOptions tracker;
   tracker.body = *body;
@@ -55,14 +77,13 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
   tracker.preset = "accurate";
   tracker.size_deviation = size_deviation_of(options.model);
   tracker.seed = common.seed;
-  tracker.landmarks = source->finds_keypoints();
-  if (source->finds_keypoints()) tracker.evidence = EvidenceKind::kBoth;
-  const std::optional<BodyFit> fit = fit_subject(tracker, *clip, poses_as_given(tracker, *clip, console), console);
-  if (Console::interrupted()) return error("interrupted: nothing is written");
-  if (!fit) return error("{}: no body fitted: {}", source->video().name(), why_not_fitted(tracker));
+  tracker.landmarks = (*source)->finds_keypoints();
+  if (tracker.landmarks) tracker.evidence = EvidenceKind::kBoth;
+  const Result<BodyFit> fit = fit_to_clip(tracker, *clip, name, console);
+  if (!fit) return fit.failure();
 
   std::vector<std::string> warnings = cameras->warnings;
-  const std::vector<std::string> of_input = source->warnings();
+  const std::vector<std::string> of_input = warnings_of(**source, options.input);
   warnings.insert(warnings.end(), of_input.begin(), of_input.end());
   if (fit->lengths.empty()) {
     warnings.emplace_back(

@@ -9,7 +9,7 @@
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/camera_choice.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/result_directory.h"
+#include "silpose/base/whole_file.h"
 #include "silpose/exchange/tables.h"
 #include "silpose/image/image_file.h"
 #include "silpose/render/draw_floor.h"

@@ -9,8 +9,8 @@
 
 #include "apps/silpose/command.h"
 #include "apps/silpose/console.h"
-#include "apps/silpose/result_directory.h"
 #include "silpose/base/result.h"
+#include "silpose/session/result_directory.h"
 
 namespace silpose::app {
 

@@ -4,10 +4,10 @@
 #include <memory>
 
 #include "apps/silpose/command.h"
-#include "apps/silpose/observation_source.h"
-#include "apps/silpose/result_directory.h"
+#include "apps/silpose/input_options.h"
 #include "apps/silpose/run_facts.h"
 #include "silpose/image/image_file.h"
+#include "silpose/session/result_directory.h"
 
 namespace silpose::app {
 namespace {
@@ -23,9 +23,11 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
   if (options.input.videos.size() > 1) throw UsageError("VIDEO: only one is allowed");
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
   if (!directory) return directory.failure();
-  Result<ObservationSource> source = ObservationSource::open(options.input);
-  if (!source) return source.failure();
-  if (const Result<void> learned = source->learn(console); !learned) return learned.failure();
+  Result<Video> video = open_input(options.input);
+  if (!video) return video.failure();
+  const auto opened = observations_of(std::move(*video), options.input, console);
+  if (!opened) return opened.failure();
+  ObservationSource* const source = opened->get();
   std::error_code failed;  // the first mask would report it
   std::filesystem::create_directories(directory->path() / "masks", failed);
 
@@ -48,7 +50,7 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
     stopped = !console.update("segmenting", frames, source->num_expected());
   }
   stopped = stopped || Console::interrupted();
-  std::vector<std::string> warnings = source->warnings();
+  std::vector<std::string> warnings = warnings_of(*source, options.input);
   if (frames == 0 && !stopped) return error("{}: no frame between --start and --end", source->video().name());
   if (empty == frames) warnings.push_back("no person was seen");
   for (const std::string& warning : warnings) console.warning(warning);
@@ -59,11 +61,11 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
   outcome.json["frames_empty"] = empty;
   outcome.json["mean_area_px"] = area / static_cast<double>(std::max<int64_t>(1, frames));
   outcome.json["stages_s"] = {{"decode", decode_s}, {"segment", segment_s}};
-  outcome.json["background"] = source->background();
+  outcome.json["background"] = source->segmentation();
   outcome.json["warnings"] = warnings;
   outcome.json["out"] = options.out;
   outcome.text =
-      fmt::format("{} masks in {}/masks, {} of them empty ({})", frames, options.out, empty, source->background());
+      fmt::format("{} masks in {}/masks, {} of them empty ({})", frames, options.out, empty, source->segmentation());
   outcome.interrupted = stopped;
   return deliver(*directory, app, {}, std::move(outcome), console);
 }

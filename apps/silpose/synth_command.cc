@@ -6,9 +6,9 @@
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/camera_choice.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/result_directory.h"
 #include "apps/silpose/run_facts.h"
 #include "silpose/exchange/clip_file.h"
+#include "silpose/session/result_directory.h"
 #include "silpose/synth/sequence_files.h"
 
 namespace silpose::app {

@@ -6,7 +6,7 @@
 #include <map>
 #include <system_error>
 
-#include "apps/silpose/result_directory.h"
+#include "silpose/session/result_directory.h"
 
 namespace silpose::app {
 namespace {

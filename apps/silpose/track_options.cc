@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "apps/silpose/body_choice.h"
-#include "apps/silpose/body_levels.h"
 #include "apps/silpose/command.h"
 #include "silpose/exchange/tables.h"
+#include "silpose/render/body_levels.h"
 
 namespace silpose::app {
 namespace {

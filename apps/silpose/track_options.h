@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "apps/silpose/camera_choice.h"
-#include "apps/silpose/observation_source.h"
+#include "apps/silpose/input_options.h"
 #include "silpose/base/result.h"
 #include "silpose/track/tracker_options.h"
 

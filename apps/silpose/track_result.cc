@@ -4,10 +4,11 @@
 
 #include <cmath>
 
-#include "apps/silpose/camera_estimate.h"
+#include "apps/silpose/body_fit_facts.h"
+#include "apps/silpose/clip_camera_choice.h"
 #include "apps/silpose/run_facts.h"
-#include "apps/silpose/subject_fit.h"
 #include "silpose/report/report_page.h"
+#include "silpose/session/result_files.h"
 
 namespace silpose::app {
 namespace {
@@ -17,14 +18,9 @@ nlohmann::ordered_json figure(double mean, double std) {
   return {{"mean", mean}, {"std", std}};
 }
 
-double frames_per_second(const Tracked& tracked) { return static_cast<double>(tracked.num_frames) / tracked.loop_s; }
-
-// Files for other programs, where they were written.
-constexpr std::pair<const char*, const char*> kDownloads[] = {
-    {"poses.csv", "angles and root position of every frame"}, {"joints.csv", "joint positions, pixels and spread"},
-    {"spread.csv", "standard deviation of every angle"},      {"motion.bvh", "the motion, for Blender and others"},
-    {"markers.trc", "joints as markers, for OpenSim"},        {"motion.mot", "coordinates, for OpenSim"},
-    {"motion.glb", "the body and its motion as glTF"},        {"overlay.mp4", "the video"}};
+double frames_per_second(const SessionResult& tracked) {
+  return static_cast<double>(tracked.num_frames) / tracked.loop_s;
+}
 
 std::string line_of(const PinholeCamera& camera) {
   const Eigen::Vector3d centre = camera.centre_in_world();
@@ -39,9 +35,9 @@ FactLines run_lines(const FinishedTrack& finished) {
   FactLines lines = {{"Command", finished.common.command_line},
                      {"Version", SILPOSE_VERSION},
                      {"Machine", machine_name()},
-                     {"Body", finished.writer.body().name},
+                     {"Body", finished.tracked.body->name},
                      {"Camera file", camera_file}};
-  for (const PinholeCamera& camera : finished.writer.cameras()) lines.emplace_back("Camera", line_of(camera));
+  for (const PinholeCamera& camera : finished.camera.cameras) lines.emplace_back("Camera", line_of(camera));
   lines.emplace_back("Preset", finished.options.tracker.preset);
   for (const auto& [name, value] : chosen_options(finished.options, finished.tracked.used))
     lines.emplace_back(name, value);
@@ -53,7 +49,7 @@ FactLines run_lines(const FinishedTrack& finished) {
 
 // How the masks were made: the segmenter and its options.
 FactLines mask_lines(const InputOptions& options, const ObservationSource& source) {
-  FactLines lines = {{"Segmenter", source.background()}};
+  FactLines lines = {{"Segmenter", source.segmentation()}};
   const auto add = [&](const char* name, const std::vector<std::string>& values) {
     if (!values.empty()) lines.emplace_back(name, fmt::format("{}", fmt::join(values, ", ")));
   };
@@ -72,14 +68,14 @@ FactLines mask_lines(const InputOptions& options, const ObservationSource& sourc
 }  // namespace
 
 Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path& folder) {
-  const Tracked& tracked = finished.tracked;
+  const SessionResult& tracked = finished.tracked;
   const RecordingSummary summary = summarise(tracked.recording);
   Outcome outcome;
-  outcome.interrupted = tracked.interrupted;
+  outcome.interrupted = tracked.stopped;
   nlohmann::ordered_json& run = outcome.json;
   run = run_facts(finished.common);
   run["model"] = finished.options.model;
-  run["body"] = finished.writer.body().name;
+  run["body"] = finished.tracked.body->name;
   run["size_deviation"] = tracked.used.size_deviation;
   if (tracked.body_fit && !tracked.recording.steps.empty()) run["fitted"] = facts_of(*tracked.body_fit);
   if (finished.camera.focal) run["focal_prior"] = facts_of(*finished.camera.focal);
@@ -91,11 +87,11 @@ Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path
   for (const auto& [stage, seconds] : tracked.seconds.list()) run["stages_s"][stage] = seconds;
   run["frames_per_second"] = frames_per_second(tracked);
   run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
-  run["background"] = finished.source.background();
+  run["background"] = finished.source.segmentation();
   run["start_by_landmarks"] = tracked.used.landmarks;
   run["evidence"] = finished.source.finds_keypoints() ? finished.options.evidence : "silhouette";
   run["cameras"] = nlohmann::ordered_json::array();
-  for (const PinholeCamera& camera : finished.writer.cameras()) run["cameras"].push_back(camera.name);
+  for (const PinholeCamera& camera : finished.camera.cameras) run["cameras"].push_back(camera.name);
   run["doubtful"] = tracked.doubtful;
   run["warnings"] = finished.warnings;
   run["out"] = finished.options.out;
@@ -113,33 +109,34 @@ Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path
   }
   if (tracked.body_fit && !tracked.recording.steps.empty()) {
     outcome.text += fmt::format("\nbody:    {}/{}, {:.3f} m tall", folder.string(), kFittedBodyFile,
-                                finished.writer.body().height_m);
+                                finished.tracked.body->height_m);
   }
   return outcome;
 }
 
 Result<void> write_track_report(const FinishedTrack& finished, const std::filesystem::path& folder) {
-  const std::vector<PinholeCamera>& cameras = finished.writer.cameras();
+  const std::vector<PinholeCamera>& cameras = finished.camera.cameras;
   ReportInput report;
   for (const std::string& video : finished.options.input.videos) {
     const std::string name = std::filesystem::path(video).filename().string();
     report.title += (report.title.empty() ? "" : ", ") + (name.empty() ? video : name);
   }
   report.recording = &finished.tracked.recording;
-  report.body = &finished.writer.body();
+  report.body = finished.tracked.body.get();
   report.viewpoint = cameras[0].centre_in_world();
   // Not there where drawing it was interrupted before its first picture.
-  if (std::filesystem::exists(folder / "overlay.mp4")) report.overlay_video = folder / "overlay.mp4";
+  if (std::filesystem::exists(folder / kOverlayFile)) report.overlay_video = folder / kOverlayFile;
   report.fps = finished.source.video().fps();
   report.stages_s = finished.tracked.seconds.list();
   report.warnings = finished.warnings;
   report.facts = run_lines(finished);
   report.mask_facts = mask_lines(finished.options.input, finished.source);
   for (size_t c = 0; c < cameras.size(); ++c) {
-    report.strips.emplace_back(cameras[c].name, finished.writer.strips()[c].examples());
+    report.strips.emplace_back(cameras[c].name, finished.masks.strips()[c].examples());
   }
-  for (const auto& [file, text] : kDownloads) {
-    if (std::filesystem::exists(folder / file)) report.downloads.emplace_back(file, text);
+  for (const ResultFile& file : kResultFiles) {
+    if (file.content.empty() || !std::filesystem::exists(folder / file.name)) continue;
+    report.downloads.emplace_back(file.name, file.content);
   }
   return write_report(folder / "report.html", report);
 }

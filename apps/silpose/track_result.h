@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "apps/silpose/command.h"
-#include "apps/silpose/track_run.h"
+#include "apps/silpose/track_options.h"
+#include "silpose/session/mask_files.h"
+#include "silpose/session/session.h"
 
 namespace silpose::app {
 
@@ -16,9 +18,9 @@ struct FinishedTrack {
   const TrackOptions& options;
   const CommonOptions& common;
   const CameraChoice& camera;
-  const TrackWriter& writer;
+  const MaskFiles& masks;
   const ObservationSource& source;
-  const Tracked& tracked;
+  const SessionResult& tracked;
   std::vector<std::string> warnings;
 };
 

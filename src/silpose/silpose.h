@@ -10,5 +10,6 @@
 #include "silpose/image/memory_source.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/segment/make_segmenter.h"
+#include "silpose/session/session.h"
 #include "silpose/track/tracker.h"
 #include "silpose/video/video.h"

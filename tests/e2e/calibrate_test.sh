@@ -71,7 +71,7 @@ expect_failure 2 'named left' calibrate left.mp4 left.mp4 --out rig.toml --squar
 expect_failure 2 'camera-name' calibrate left.mp4 right.mp4 --out rig.toml --square 60 --camera-name one
 expect_failure 1 'absent.mp4' calibrate absent.mp4 --out rig.toml --square 60
 expect_failure 1 'left.mp4: no chessboard of 11x6' calibrate left.mp4 --out rig.toml --square 60 --board 11x6
-expect_failure 1 'ends before --floor-frame 9' calibrate left.mp4 --out rig.toml --square 60 --board 8x5 --floor-frame 9
+expect_failure 1 'ends before 9 s, where the board' calibrate left.mp4 --out rig.toml --square 60 --board 8x5 --floor-frame 9
 expect_failure 1 'seen: is a directory' calibrate left.mp4 --out seen --square 60 --board 8x5
 cmp -s before.toml rig.toml || fail "a failure changed the earlier calibration"
 

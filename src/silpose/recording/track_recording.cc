@@ -34,6 +34,28 @@ PoseTable table_of(const TrackRecording& recording, bool has_scores, const Value
 
 }  // namespace
 
+TrackRecording recording_of(std::span<const StepReport> reports, const std::string& skeleton,
+                            const std::vector<std::string>& cameras) {
+  TrackRecording recording{.skeleton = skeleton, .steps = {}, .cameras = cameras};
+  for (const StepReport& report : reports) {
+    RecordedStep& step = recording.steps.emplace_back();
+    step.frame_idx = report.frame_idx;
+    step.time_ns = report.time_ns;
+    step.state = report.state;
+    step.pose = report.pose;
+    step.mode = report.mode;
+    step.spread = report.spread;
+    step.landmark_spread = report.landmark_spread;
+    step.visual_accuracy = report.visual_accuracy;
+    step.effective_sample_size = report.effective_sample_size;
+    check(report.trust.size() <= cameras.size(), "recording_of: {} cameras in a report, {} names", report.trust.size(),
+          cameras.size());
+    step.trust.assign(cameras.size(), std::numeric_limits<double>::quiet_NaN());
+    for (size_t c = 0; c < report.trust.size(); ++c) step.trust[c] = report.trust[c].overall;
+  }
+  return recording;
+}
+
 std::string_view state_name(StepReport::State state) {
   switch (state) {
     case StepReport::State::kWaiting:

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,6 +33,10 @@ struct TrackRecording {
   std::vector<RecordedStep> steps;   // [T] in time order
   std::vector<std::string> cameras;  // [C] by name, of those that report their trust
 };
+
+// Of reports in time order; `cameras`: the names of those that report their trust, [C].
+TrackRecording recording_of(std::span<const StepReport> reports, const std::string& skeleton,
+                            const std::vector<std::string>& cameras);
 
 // "waiting", "initialised", "tracked", "coasted".
 std::string_view state_name(StepReport::State state);

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "silpose/body/body_model.h"
+#include "silpose/recording/mask_strip.h"
 #include "silpose/recording/track_recording.h"
-#include "silpose/report/mask_strip.h"
 
 namespace silpose {
 

@@ -347,6 +347,13 @@ TrackerOptions options_before_fit(const TrackerOptions& options) {
   return pass;
 }
 
+std::string why_not_fitted(const TrackerOptions& options) {
+  if (options.cameras.size() > 1) return "there is no frame in which two cameras see the subject";
+  return *options.resolved().floor
+             ? "no frame has 3D keypoints, and the subject does not stand on the floor y = 0 of the camera file"
+             : "no frame has 3D keypoints, and no floor is known";
+}
+
 TrackerOptions options_after_fit(TrackerOptions options, const BodyFit& fit) {
   options.body = fit.body;
   options.size_deviation = fit.size_deviation;

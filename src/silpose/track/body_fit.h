@@ -50,6 +50,9 @@ std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const C
 // (size_fit.h).
 TrackerOptions options_before_fit(const TrackerOptions& options);
 
+// Why fit_body() found nothing, for the user. REQUIRES: it did, with these options.
+std::string why_not_fitted(const TrackerOptions& options);
+
 // The same options with the fitted body.
 TrackerOptions options_after_fit(TrackerOptions options, const BodyFit& fit);
 

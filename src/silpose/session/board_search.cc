@@ -1,4 +1,4 @@
-#include "apps/silpose/board_search.h"
+#include "silpose/session/board_search.h"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 #include "silpose/base/parallel.h"
 #include "silpose/video/video.h"
 
-namespace silpose::app {
+namespace silpose {
 namespace {
 
 constexpr int64_t kFramesToSearch = 200;
@@ -41,7 +41,7 @@ void search_batch(const Board& board, const std::vector<Frame>& batch, std::opti
 
 Result<BoardSearch> search_board(const Board& board, const std::vector<std::string>& videos,
                                  const std::vector<std::string>& names, std::optional<double> floor_s,
-                                 std::optional<double> fps, Console& console) {
+                                 std::optional<double> fps, ProgressSink& progress) {
   Result<Video> video = open_video(videos, {.default_fps = fps.value_or(30)});
   if (!video) return video.failure();
   if (video->is_live()) return error("{}: is live; record it first", video->name());
@@ -75,7 +75,7 @@ Result<BoardSearch> search_board(const Board& board, const std::vector<std::stri
       search.num_searched += std::ssize(batch);
       batch.clear();
     }
-    if (!console.update("looking for the board", num_read, num_frames)) return error("interrupted");
+    if (!progress.update("looking for the board", num_read, num_frames)) return error("interrupted");
   }
 
   for (size_t c = 0; c < videos.size(); ++c) {
@@ -84,17 +84,18 @@ Result<BoardSearch> search_board(const Board& board, const std::vector<std::stri
                  board_text(board), search.num_searched);
   }
   if (!floor_s) return search;
-  if (!floor_frame) return error("{}: ends before --floor-frame {:g} s", videos[0], *floor_s);
+  if (!floor_frame)
+    return error("{}: ends before {:g} s, where the board is said to lie on the floor", videos[0], *floor_s);
   const bool is_seen = std::any_of(search.cameras.begin(), search.cameras.end(), [&](const CameraSightings& camera) {
     return std::any_of(camera.sightings.begin(), camera.sightings.end(),
                        [&](const Sighting& sighting) { return sighting.instant == floor_frame; });
   });
   if (!is_seen) {
-    return error("{}: no {} at {:g} s (frame {}), where --floor-frame says that it lies on the floor",
-                 fmt::join(videos, ", "), board_text(board), *floor_s, *floor_frame);
+    return error("{}: no {} at {:g} s (frame {}), where it is said to lie on the floor", fmt::join(videos, ", "),
+                 board_text(board), *floor_s, *floor_frame);
   }
   search.floor_instant = floor_frame;
   return search;
 }
 
-}  // namespace silpose::app
+}  // namespace silpose

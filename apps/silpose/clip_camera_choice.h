@@ -1,4 +1,4 @@
-// The camera of a clip that has no calibration file, estimated from the person in it (calibrate/person_camera.h).
+// The camera of `silpose track` without a calibration file: estimated from the clip, or assumed.
 // Threads: the main thread only.
 #pragma once
 
@@ -6,14 +6,14 @@
 
 #include "apps/silpose/camera_choice.h"
 #include "apps/silpose/console.h"
-#include "apps/silpose/observation_source.h"
 #include "silpose/base/result.h"
+#include "silpose/session/observation_source.h"
 
 namespace silpose::app {
 
-// Masks some frames of the clip, which is rewound then, and puts the estimated camera, with a warning that says how
-// well it is known, in place of the assumed one; where the clip shows too little of the person, the assumed one stays,
-// and its warning says why. Errors: those of ObservationSource; interrupted.
+// Puts the estimated camera, with a warning that says how well it is known, in place of the assumed one; where the clip
+// shows too little of the person, the assumed one stays, and its warning says why. Errors: those of
+// estimate_clip_camera(); interrupted.
 Result<void> estimate_camera_of(ObservationSource& source, double body_height_m, CameraChoice& choice,
                                 Console& console);
 

@@ -1,14 +1,13 @@
-#include "apps/silpose/body_levels.h"
+#include "silpose/render/body_levels.h"
 
 #include <algorithm>
 
 #include "silpose/body/levels.h"
 #include "silpose/render/level_accuracy.h"
 
-namespace silpose::app {
+namespace silpose {
 
-void add_levels(BodyModel& body, Console& console) {
-  console.message("building its levels of detail");
+void add_levels(BodyModel& body) {
   body.levels.clear();
   for (const int num_vertices : kKeptLevels) {
     BodyLevel level = simplify(body, num_vertices);
@@ -29,4 +28,4 @@ Result<const BodyLevel*> choose_level(const BodyModel& body, double mean_iou) {
                mean_iou, best);
 }
 
-}  // namespace silpose::app
+}  // namespace silpose

@@ -1,4 +1,4 @@
-#include "apps/silpose/experiment_directory.h"
+#include "silpose/experiment/experiment_directory.h"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 #include <optional>
 #include <system_error>
 
-namespace silpose::app {
+namespace silpose {
 namespace {
 
 namespace fs = std::filesystem;
@@ -86,4 +86,4 @@ Result<void> ExperimentDirectory::commit(const std::vector<std::string>& names) 
   return {};
 }
 
-}  // namespace silpose::app
+}  // namespace silpose

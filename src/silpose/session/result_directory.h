@@ -1,17 +1,16 @@
 // ResultDirectory: a directory of results is written as DIR.partial and renamed to DIR when it is whole; an earlier
 // result under DIR is replaced only then. A directory that holds anything silpose does not write is never touched.
-// Threads: the main thread only.
+// Threads: one thread per directory.
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "silpose/base/result.h"
 
-namespace silpose::app {
+namespace silpose {
 
 class ResultDirectory {
  public:
@@ -51,9 +50,4 @@ bool is_whole_result(const std::filesystem::path& directory);
 // may.
 std::optional<std::string> foreign_content(const std::filesystem::path& directory, bool must_be_whole);
 
-// Writes a single file next to its final name, then renames it: `write` gets the temporary path, which ends in the same
-// extension. Errors: those of `write`; not writable.
-Result<void> write_whole(const std::filesystem::path& file,
-                         const std::function<Result<void>(const std::filesystem::path&)>& write);
-
-}  // namespace silpose::app
+}  // namespace silpose

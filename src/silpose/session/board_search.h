@@ -1,5 +1,5 @@
 // Looks for a board in videos: which frames, and in which of them which camera sees it.
-// Threads: the main thread only; the search itself uses all cores.
+// Threads: a function without state; uses all cores.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/silpose/console.h"
+#include "silpose/base/progress.h"
 #include "silpose/base/result.h"
 #include "silpose/calibrate/board.h"
 #include "silpose/calibrate/sighting.h"
 
-namespace silpose::app {
+namespace silpose {
 
 struct BoardSearch {
   std::vector<CameraSightings> cameras;  // [C] sightings by frame number
@@ -26,6 +26,6 @@ struct BoardSearch {
 // Errors: those of open_video(); a live camera; no board anywhere in a video, or in any at `floor_s`; interrupted.
 Result<BoardSearch> search_board(const Board& board, const std::vector<std::string>& videos,
                                  const std::vector<std::string>& names, std::optional<double> floor_s,
-                                 std::optional<double> fps, Console& console);
+                                 std::optional<double> fps, ProgressSink& progress);
 
-}  // namespace silpose::app
+}  // namespace silpose

@@ -1,7 +1,7 @@
 // ExperimentDirectory: experiments under DIR, one folder each. They are made in DIR.partial, where finished runs are
 // kept for --resume, and moved to DIR/NAME when all are complete; other experiments in DIR stay. A DIR that holds
 // anything else is refused.
-// Threads: the main thread only.
+// Threads: one thread per directory.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 #include "silpose/base/result.h"
 
-namespace silpose::app {
+namespace silpose {
 
 class ExperimentDirectory {
  public:
@@ -28,4 +28,4 @@ class ExperimentDirectory {
   std::filesystem::path final_, partial_;
 };
 
-}  // namespace silpose::app
+}  // namespace silpose

@@ -1,4 +1,4 @@
-#include "silpose/report/mask_strip.h"
+#include "silpose/recording/mask_strip.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,28 +1,20 @@
-#include "apps/silpose/result_directory.h"
+#include "silpose/session/result_directory.h"
 
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <string_view>
 #include <system_error>
 #include <vector>
 
-#include "apps/silpose/track_checkpoint.h"
-#include "apps/silpose/track_writer.h"
+#include "silpose/session/mask_files.h"
+#include "silpose/session/result_files.h"
 
-namespace silpose::app {
+namespace silpose {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Everything that track, synth and segment put into a directory.
-constexpr std::array<std::string_view, 16> kFiles = {
-    "poses.csv",     "poses_normalised.csv", "spread.csv",  "joints.csv", "camera.toml", "overlay.mp4", "report.html",
-    "config.toml",   "motion.bvh",           "markers.trc", "motion.mot", "motion.glb",  "run.json",    "video.mp4",
-    kFittedBodyFile, kCheckpointFile};
 
 bool is_mask_folder(const fs::path& folder) {
   std::error_code failed;
@@ -41,12 +33,13 @@ bool is_for_resuming(const std::string& name) { return name == kCheckpointFile |
 bool is_own(const fs::directory_entry& entry) {
   std::string name = entry.path().filename().string();
   if (entry.is_directory()) {
-    const bool is_known = name == "masks" || name.starts_with("masks_") || is_for_resuming(name);
+    const bool is_known =
+        name == kMaskFolder || name.starts_with(std::string(kMaskFolder) + "_") || is_for_resuming(name);
     return is_known && is_mask_folder(entry.path());
   }
   if (name.ends_with(".tmp")) name.resize(name.size() - 4);  // of a program that was killed (base/text_file.h)
   if (name.starts_with("video_") && name.ends_with(".mp4")) return true;
-  return std::find(kFiles.begin(), kFiles.end(), name) != kFiles.end();
+  return std::ranges::find(kResultFiles, name, &ResultFile::name) != std::end(kResultFiles);
 }
 
 }  // namespace
@@ -128,20 +121,4 @@ ResultDirectory::~ResultDirectory() {
   if (!partial_.empty() && !stays_) fs::remove_all(partial_, ignored);
 }
 
-Result<void> write_whole(const fs::path& file, const std::function<Result<void>(const fs::path&)>& write) {
-  std::error_code failed;
-  if (fs::is_directory(file, failed)) return error("{}: is a directory", file.string());
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
-  fs::path partial = file.parent_path() / (file.stem().string() + ".partial");
-  partial += file.extension();
-  const Result<void> written = write(partial);
-  if (!written) {
-    fs::remove(partial, failed);
-    return error("{}: not writable ({})", file.string(), written.error().message);
-  }
-  fs::rename(partial, file, failed);
-  if (failed) return error("{}: not writable ({})", file.string(), failed.message());
-  return {};
-}
-
-}  // namespace silpose::app
+}  // namespace silpose
