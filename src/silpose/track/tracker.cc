@@ -30,7 +30,7 @@ constexpr double kLongestCoast_s = 1.0;
 // then at growing intervals.
 constexpr double kGoodAccuracy = 0.97;
 constexpr double kFirstReinitialise_s = 0.12;
-constexpr double kReinitialiseLater = 4;  // times the interval before; as kReinitialiseShare
+constexpr double kReinitialiseLater = 4;  // times the interval before [tuned on the runs of kReinitialiseShare]
 // [guess] The interval is short again after the overlap falls below its recent mean, by more than its recent
 // deviations. Bad masks alone do not start a search again and again.
 constexpr double kLeastLost = 0.03, kLostDeviations = 3, kRecent_s = 1;
