@@ -22,6 +22,11 @@ TEST(Project, IncludesOnlyLowerFloors) {
 TEST(Project, HasNoCirclesBetweenUnits) { EXPECT_THAT(unit_circles(kProject), IsEmpty()); }
 TEST(Project, HasNoFolderThatSaysNothing) { EXPECT_THAT(folder_violations(kProject), IsEmpty()); }
 TEST(Project, CitesOnlyWhatTheBibliographyHolds) { EXPECT_THAT(citation_violations(kProject), IsEmpty()); }
+TEST(Project, SaysWhereTunedConstantsComeFrom) {
+  EXPECT_THAT(provenance_violations(kProject, {"src/silpose/filter", "src/silpose/likelihood", "src/silpose/motion",
+                                               "src/silpose/segment", "src/silpose/track"}),
+              IsEmpty());
+}
 TEST(Project, IsWrittenInTheTermsOfTheField) {
   const Phrases phrases = {
       {"anew", "again, from scratch"}, {"of late", "recent"},       {"of_late", "recent"},
@@ -130,6 +135,54 @@ TEST_F(SourceRules, RefusesCitationsThatDoNotResolve) {
   EXPECT_THAT(citation_violations(root_),
               ElementsAre("src/silpose/body/a.h:3: 'kalman1960a' is not in docs/references.bib",
                           "src/silpose/body/a.h:4: 'makehuman' is not in docs/references.bib"));
+}
+
+TEST_F(SourceRules, RefusesConstantsWithoutProvenance) {
+  write("src/silpose/track/a.cc",
+        "constexpr double kBare = 0.5;\n"
+        "constexpr double kOwn = 0.5;  // [guess] metres\n"
+        "constexpr int kNext = 3, kAfter = 4;  // tag of another line\n"
+        "// A group. [tuned on rendered\n"
+        "// clips]\n"
+        "constexpr float kInGroup = 1.5f;\n"
+        "constexpr int kAlsoInGroup[] = {1,\n"
+        "                                2};\n"
+        "\n"
+        "constexpr int kAfterTheGroup = 7;\n"
+        "// Another group.\n"
+        "inline constexpr Table kTable[] = {{\"root_1\", x},\n"
+        "                                   {\"b\", .5}};\n"
+        "constexpr int kTagless = 2;  // guess [guessed] [tuned on ]\n");
+  EXPECT_THAT(
+      provenance_violations(root_, {"src/silpose/track"}),
+      ElementsAre(HasSubstr("a.cc:1: kBare does not say"), HasSubstr("a.cc:3: kNext"),
+                  HasSubstr("a.cc:10: kAfterTheGroup"), HasSubstr("a.cc:12: kTable"), HasSubstr("a.cc:14: kTagless")));
+}
+
+TEST_F(SourceRules, RefusesProvenanceThatDoesNotResolve) {
+  write("docs/references.bib", "@article{deutscher2005,\n}\n");
+  write("experiments/human-walk.toml", "");
+  write("src/silpose/track/a.cc",
+        "constexpr double kRight = 0.5;  // [paper: deutscher2005] [measured: experiment human-walk]\n"
+        "constexpr double kNoPaper = 0.5;  // [paper: kalman1960]\n"
+        "constexpr double kNoExperiment = 0.5;  // [measured: experiment human-run]\n"
+        "constexpr double kNoName = 0.5;  // [measured: by hand]\n");
+  EXPECT_THAT(provenance_violations(root_, {"src/silpose/track", "src/silpose/fit"}),
+              ElementsAre("src/silpose/track/a.cc:2: 'kalman1960' is not in docs/references.bib",
+                          "src/silpose/track/a.cc:3: there is no experiments/human-run.toml",
+                          "src/silpose/track/a.cc:4: '[measured: by hand]' does not name an experiment",
+                          "src/silpose/fit: there is no such folder"));
+}
+
+TEST_F(SourceRules, DerivedConstantsTextsAndLocalsNeedNoProvenance) {
+  write("src/silpose/track/a.h",
+        "constexpr int kReach = kTextureReach;\nconstexpr std::string_view kName = \"level 2\";\n"
+        "constexpr double kInfinity = std::numeric_limits<double>::infinity();\nconstexpr Blur kBlur = Blur::k4;\n"
+        "constexpr int words_of(int n) { return n / 64; }\nvoid f() {\n  constexpr int kLocal = 5;\n}\n");
+  write("src/silpose/track/a_test.cc", "constexpr int kInTest = 5;\n");
+  write("src/silpose/track/body_for_test.h", "constexpr int kForTest = 5;\n");
+  write("src/silpose/render/a.cc", "constexpr int kElsewhere = 5;\n");
+  EXPECT_THAT(provenance_violations(root_, {"src/silpose/track"}), IsEmpty());
 }
 
 TEST_F(SourceRules, FindsPhrasesAsWholeWordsInAnyCase) {

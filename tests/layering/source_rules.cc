@@ -137,6 +137,87 @@ std::set<std::string> cited_keys(const std::string& comment) {
   return keys;
 }
 
+// The tags of a comment (its lines joined by spaces) that are wrong, each with why; `is_tagged` where a right one is
+// found.
+std::vector<std::string> wrong_tags(const std::string& comment, const fs::path& root, const std::set<std::string>& keys,
+                                    bool& is_tagged) {
+  static const std::regex kTag(
+      R"(\[(?:(guess|definition|tuned on [^\]]*[^\]\s][^\]]*)|(paper|measured): *([^\]]*))\])");
+  static const std::regex kExperiment(R"(experiment ([A-Za-z0-9_-]+))");
+  std::vector<std::string> wrong;
+  for (std::sregex_iterator it(comment.begin(), comment.end(), kTag), end; it != end; ++it) {
+    is_tagged = true;
+    const std::string kind = (*it)[2], source = (*it)[3];
+    std::smatch match;
+    if (kind == "paper" && !keys.contains(source)) wrong.push_back("'" + source + "' is not in docs/references.bib");
+    if (kind != "measured") continue;
+    if (!std::regex_match(source, match, kExperiment)) {
+      wrong.push_back("'[measured: " + source + "]' does not name an experiment");
+    } else if (!fs::is_regular_file(root / "experiments" / (match[1].str() + ".toml"))) {
+      wrong.push_back("there is no experiments/" + match[1].str() + ".toml");
+    }
+  }
+  return wrong;
+}
+
+// Looks at one file, line by line; `report` is called with a line number and what is wrong there.
+class ProvenanceScan {
+ public:
+  using Report = std::function<void(int, const std::string&)>;
+  using Check = std::function<bool(int, const std::string&)>;  // reports wrong tags; whether a comment has any tag
+
+  ProvenanceScan(Check check, Report report) : check_(std::move(check)), report_(std::move(report)) {}
+
+  void add(int number, const std::string& line) {
+    static const std::regex kConstant(R"(^(?:inline |static )*constexpr\b.*?\b(k[A-Z]\w*)\s*(?:\[[^\]]*\])?\s*[={])");
+    static const std::regex kString(R"("(?:[^"\\]|\\.)*")");
+    const std::string text = std::regex_replace(line, kString, "\"\"");
+    const size_t slashes = text.find("//");
+    const std::string code = text.substr(0, slashes);
+    const std::string comment = slashes == std::string::npos ? "" : text.substr(slashes + 2);
+    const bool is_blank = code.find_first_not_of(" \t") == std::string::npos;
+    if (is_blank && !comment.empty()) {
+      if (!in_comment_) group_.clear();
+      group_ += " " + comment;
+    }
+    in_comment_ = is_blank && !comment.empty();
+    if (is_blank && comment.empty()) group_.clear();
+    if (is_blank) return;
+    std::smatch match;
+    if (name_.empty() && std::regex_search(code, match, kConstant)) {
+      name_ = match[1];
+      begin_ = number;
+      initialiser_ = own_ = "";
+      initialiser_ += code.substr(static_cast<size_t>(match.position(0) + match.length(0)));
+    } else if (!name_.empty()) {
+      initialiser_ += " " + code;
+    }
+    if (name_.empty()) return;
+    own_ += " " + comment;
+    if (code.find(';') != std::string::npos) finish();
+  }
+
+ private:
+  void finish() {
+    static const std::regex kNumber(R"((^|[^\w])\.?[0-9])");
+    const bool has_number = std::regex_search(initialiser_, kNumber);
+    const bool own = check_(begin_, own_), group = check_(begin_, group_);
+    if (has_number && !own && !group) {
+      report_(begin_, name_ +
+                          " does not say where it comes from: [paper: KEY], [measured: experiment NAME], "
+                          "[tuned on WHAT], [guess] or [definition]");
+    }
+    name_.clear();
+  }
+
+  Check check_;
+  Report report_;
+  std::string group_;  // comment above the group that is read
+  bool in_comment_ = false;
+  std::string name_, initialiser_, own_;  // of the constant that is read; its name is empty outside of one
+  int begin_ = 0;
+};
+
 }  // namespace
 
 Floors parse_floors(std::string_view text) {
@@ -223,6 +304,33 @@ std::vector<std::string> citation_violations(const fs::path& root) {
       for (const std::string& key : cited_keys(line.substr(comment))) {
         if (!known.contains(key)) violations.push_back(at(file, number, "'" + key + "' is not in docs/references.bib"));
       }
+    });
+  }
+  return violations;
+}
+
+std::vector<std::string> provenance_violations(const fs::path& root, const std::vector<std::string>& folders) {
+  const std::set<std::string> keys = bibliography_keys(root / "docs" / "references.bib");
+  std::vector<std::string> violations;
+  for (const std::string& folder : folders) {
+    if (!fs::is_directory(root / folder)) {
+      violations.push_back(folder + ": there is no such folder");
+      continue;
+    }
+    fs::path current;
+    const auto report = [&](int number, const std::string& what) { violations.push_back(at(current, number, what)); };
+    const auto check = [&](int number, const std::string& comment) {
+      bool is_tagged = false;
+      for (const std::string& wrong : wrong_tags(comment, root, keys, is_tagged)) report(number, wrong);
+      return is_tagged;
+    };
+    ProvenanceScan scan(check, report);
+    for_each_line(root, folder, [&](const fs::path& file, int number, const std::string& line) {
+      const std::string stem = file.stem().string();
+      if (stem.ends_with("_test") || stem.ends_with("_for_test")) return;
+      if (file != current) scan = ProvenanceScan(check, report);
+      current = file;
+      scan.add(number, line);
     });
   }
   return violations;

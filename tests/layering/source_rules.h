@@ -33,6 +33,16 @@ std::vector<std::string> folder_violations(const std::filesystem::path& root);
 // ROOT/{src,apps,bench,examples} that ROOT/docs/references.bib does not hold.
 std::vector<std::string> citation_violations(const std::filesystem::path& root);
 
+// Constants at namespace scope in .h and .cc files of these folders, tests apart, that do not say where they come from:
+// `constexpr` variables named kX whose initialiser has a number literal (one that is derived from other constants alone
+// has none). The tag is in the comment at the end of one of the constant's own lines, or in the comment above its
+// group; a group ends at an empty line and at the next comment line. Tags: [paper: KEY], a key of docs/references.bib;
+// [measured: experiment NAME], a file experiments/NAME.toml; [tuned on WHAT]; [guess]; [definition], where the value
+// follows from a layout, a unit or a law. A folder that is missing is a violation, so that a rename does not end the
+// check.
+std::vector<std::string> provenance_violations(const std::filesystem::path& root,
+                                               const std::vector<std::string>& folders);
+
 // Phrases that are not the field's terms, in lower case, each with what to write instead.
 using Phrases = std::map<std::string, std::string, std::less<>>;
 

@@ -10,7 +10,8 @@
 namespace silpose {
 namespace {
 
-constexpr uint64_t kCrossoverStream = 0xc2055ba5e0d5a17du;  // keeps these draws apart from the noise of the same layer
+// Keeps these draws apart from the noise of the same layer. [definition]
+constexpr uint64_t kCrossoverStream = 0xc2055ba5e0d5a17du;
 
 }  // namespace
 
@@ -38,7 +39,7 @@ double annealing_exponent(std::span<const double> log_likelihood, double surviva
     high = low;
     low *= 0.1;
   }
-  constexpr int kBisections = 50;
+  constexpr int kBisections = 50;  // [guess]
   for (int i = 0; i < kBisections; ++i) {
     const double middle = std::sqrt(low) * std::sqrt(high);
     (survivors(middle) >= wanted ? low : high) = middle;

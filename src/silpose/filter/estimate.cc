@@ -9,8 +9,8 @@
 namespace silpose {
 namespace {
 
-constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kNoDirection = 1e-9;  // a mean unit vector shorter than this is rounding
+constexpr double kTurn = 2 * std::numbers::pi;  // [definition]
+constexpr double kNoDirection = 1e-9;           // [guess] a mean unit vector shorter than this is rounding
 
 double shorter_way(double difference) { return std::remainder(difference, kTurn); }
 
@@ -119,8 +119,8 @@ Cluster cluster_estimate(const StateBatch& states, std::span<const double> weigh
     }
   };
 
-  constexpr int kMaxShifts = 50;
-  constexpr double kAtRest = 1e-4;  // of the bandwidth
+  constexpr int kMaxShifts = 50;    // [guess]
+  constexpr double kAtRest = 1e-4;  // [guess] of the bandwidth
   Cluster cluster;
   const int start = mode_index(weight);
   cluster.mean.assign(states.row(start).begin(), states.row(start).end());

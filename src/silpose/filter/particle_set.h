@@ -52,13 +52,13 @@ struct ParticleSet {
   static auto members(auto& s) { return std::tie(s.states, s.log_weights); }
 };
 
-// The stream coordinate of a layer of a step. A step has at most kMaxLayers; layer 0 is the step's own.
+// The stream coordinate of a layer of a step. A step has at most kMaxLayers; layer 0 is the step's own. [definition]
 inline constexpr int kMaxLayers = 256;
 inline constexpr uint64_t stream_of(uint64_t step, int layer = 0) {
   return step * kMaxLayers + static_cast<uint64_t>(layer);
 }
 
-// The particle coordinate of the stream that resampling uses, which no particle has.
+// The particle coordinate of the stream that resampling uses, which no particle has. [definition]
 inline constexpr uint64_t kResamplingParticle = ~uint64_t{0};
 
 }  // namespace silpose

@@ -27,7 +27,7 @@
 
 namespace silpose {
 
-inline constexpr int kRegenerate = -1;
+inline constexpr int kRegenerate = -1;  // [definition]
 
 class Resampler {
  public:

@@ -5,7 +5,7 @@
 namespace silpose {
 namespace {
 
-constexpr int kReach = kBlurRadius + 1;  // cells around the model's that are looked up
+constexpr int kReach = kBlurRadius + 1;  // [definition] cells around the model's that are looked up
 
 }  // namespace
 

@@ -18,6 +18,7 @@
 namespace silpose {
 
 // How wide the blur is: sigma, in pixels of a subject who is kSubjectHeight pixels tall; it scales with the subject.
+// [definition]
 enum class Blur { k2 = 0, k4, k8, k16, k32 };
 inline constexpr std::array<int, 5> kBlurSigma = {2, 4, 8, 16, 32};
 

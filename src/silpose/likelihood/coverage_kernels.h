@@ -11,7 +11,7 @@
 namespace silpose {
 
 // G * G along one axis, sigma one cell, at 0, 1, ... kBlurRadius cells; sums to 1 over both sides. Beyond, exp(-d^2 /
-// 4) is below 0.2 % of the peak.
+// 4) is below 0.2 % of the peak. [definition]
 inline constexpr int kBlurRadius = 4;
 extern const std::array<float, kBlurRadius + 1> kBlurKernel;
 

@@ -85,7 +85,7 @@ Eigen::VectorXd motion_of(const Crossing& crossing, const BodyModel& body, const
 
 // G * G at a distance of whole cells, cut off as CoverageDifference does.
 double kernel(int d) {
-  constexpr int kRadius = 4;
+  constexpr int kRadius = 4;  // [definition] kBlurRadius
   if (std::abs(d) > kRadius) return 0;
   double sum = 0;
   for (int i = -kRadius; i <= kRadius; ++i) sum += std::exp(-i * i / 4.0);

@@ -18,10 +18,11 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, AlignedFloats::kLanes>;
 using Vector = hn::Vec<Tag>;
 
+// [definition] Layout of blocks and cells.
 constexpr size_t kBlock = AlignedFloats::kLanes;
 constexpr int32_t kSide = 2 * kBlurRadius + 1;  // cells that a cell's blur reaches along a row
 constexpr int32_t kNoWeight = (kBlurRadius + 1) * kSide;
-constexpr size_t kAtOnce = 4;
+constexpr size_t kAtOnce = 4;  // cells that are listed at once
 
 void add_up_ends(const EndRow* ends, size_t num_ends, const PointRows& points, size_t stride, size_t num_cells,
                  float* HWY_RESTRICT jacobian, int32_t* HWY_RESTRICT blocks) {
@@ -162,7 +163,7 @@ void find_bits(const int32_t* HWY_RESTRICT blocks, size_t n, size_t num_blocks, 
   }
 }
 
-// A few rows of one block of the product, kVectors registers each, kSums registers together.
+// A few rows of one block of the product, kVectors registers each, kSums registers together. [guess]
 constexpr size_t kSums = 8;
 template <size_t kVectors>
 HWY_INLINE void product_rows(const float* a, const float* b, const uint64_t* a_bits, const uint64_t* b_bits,

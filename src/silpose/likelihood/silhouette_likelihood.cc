@@ -39,7 +39,7 @@ void ignore(Evidence::View& view, const Mask& ignored) {
 
 // So that the samples of a whole picture fit into a raster.
 double largest_scale(const PinholeCamera& camera) {
-  constexpr double kMostSamples = 1 << 29;
+  constexpr double kMostSamples = 1 << 29;  // [definition]
   return std::sqrt(kMostSamples / kFullCoverage / camera.width / camera.height);
 }
 

@@ -12,7 +12,7 @@
 namespace silpose {
 namespace {
 
-constexpr int kNumHeadings = 8;
+constexpr int kNumHeadings = 8;  // [guess]
 
 struct Angle {
   std::string_view dof;  // "both_" stands for right and left

@@ -10,10 +10,10 @@
 namespace silpose {
 namespace {
 
-constexpr size_t kGrain = 64;  // particles per task
+constexpr size_t kGrain = 64;  // [guess] particles per task
 
-// What a frame's acceleration noise changes a velocity by, against the frame's noise of plain diffusion: a hip swings
-// through 25 degrees once a second, so its velocity changes by about a degree a frame every frame.
+// [guess] What a frame's acceleration noise changes a velocity by, against the frame's noise of plain diffusion: a hip
+// swings through 25 degrees once a second, so its velocity changes by about a degree per frame in every frame.
 constexpr double kVelocityShare = 0.5;
 
 class Diffusion final : public MotionModel {

@@ -17,8 +17,9 @@ struct Row {
   double deviation;      // degrees, or metres for translations
 };
 
-// A walker moves 45 mm a frame in a steady direction and bobs by 25 mm twice a stride; hips and knees turn by up to
-// 8 degrees a frame, of which much is found again by weighing. Twists show little in a silhouette and move little.
+// Random walk: deviation of the change within kNoiseInterval_s. [guess] A walker moves 45 mm per frame in a steady
+// direction and bobs by 25 mm twice per stride; hips and knees turn by up to 8 degrees per frame. The deviations are
+// smaller: the weights select the particles that moved far enough. Twists move little and hardly change a silhouette.
 constexpr Row kHumanNoise[] = {
     {"root_tx", 0.020},  {"root_ty", 0.010}, {"root_tz", 0.020}, {"root_rx", 1},      {"root_ry", 2},
     {"root_rz", 1},      {"abdomen_rx", 1},  {"thorax_rx", 1},   {"thorax_ry", 2},    {"thorax_rz", 1},
@@ -27,7 +28,8 @@ constexpr Row kHumanNoise[] = {
     {"upper_arm_rz", 4}, {"forearm_rx", 5},  {"forearm_ry", 2},  {"hand_rx", 3},      {"hand_rz", 3},
 };
 
-// What walking, running and dancing joints do to their own velocity in 1/30 s.
+// Acceleration: deviation of the change of velocity within kNoiseInterval_s, times that interval. [guess] for walking,
+// running and dancing.
 constexpr Row kHumanAcceleration[] = {
     {"root_tx", 0.008},  {"root_ty", 0.008},  {"root_tz", 0.008},  {"root_rx", 1},      {"root_ry", 1},
     {"root_rz", 1},      {"abdomen_rx", 0.5}, {"thorax_rx", 0.75}, {"thorax_ry", 1},    {"thorax_rz", 0.75},
@@ -36,7 +38,9 @@ constexpr Row kHumanAcceleration[] = {
     {"upper_arm_rz", 2}, {"forearm_rx", 2},   {"forearm_ry", 1.5}, {"hand_rx", 1.5},    {"hand_rz", 1.5},
 };
 
-// How far from hanging straight down, facing ahead, people hold their joints as they stand, walk and gesture.
+// Prior about the rest pose: deviation of joints from hanging straight down, facing ahead, as people stand, walk and
+// gesture. [guess] for each DOF; the scale of the table was [tuned on walks with masks of an IoU of 0.9]: 0.3 of its
+// weight did not help, half of it and more did (docs/notebook/tracking.md).
 constexpr Row kHumanPose[] = {
     {"root_rx", 15},      {"root_rz", 12},      {"abdomen_rx", 10}, {"thorax_rx", 10},  {"thorax_ry", 12},
     {"thorax_rz", 8},     {"head_rx", 15},      {"head_ry", 20},    {"head_rz", 10},    {"thigh_rx", 30},
@@ -45,8 +49,8 @@ constexpr Row kHumanPose[] = {
     {"hand_rz", 10},
 };
 
-// Where directions of the limbs are seen, those who sit and squat are not held upright.
-// [tuned: nine takes of five people]
+// Where limb directions are measured, the prior of these joints is this many times wider: people who sit or squat are
+// not pulled upright. [tuned on nine takes of five people]
 constexpr std::string_view kSeenByDirections[] = {"thigh_rx", "shin_rx"};
 constexpr double kLoosened = 3;
 

@@ -9,8 +9,9 @@
 
 namespace silpose {
 
-inline constexpr double kNoiseInterval_s = 1.0 / 30;  // the interval that noise deviations are stated for
-inline constexpr double kTypicalSigmaDeg = 4;         // the table's own deviation of a large joint, such as the hip
+// [definition] The interval that noise deviations are stated for; the table's own deviation of a large joint (the hip).
+inline constexpr double kNoiseInterval_s = 1.0 / 30;
+inline constexpr double kTypicalSigmaDeg = 4;
 
 // Standard deviation [D] of each DOF over kNoiseInterval_s, radians and metres; it grows with the square root of time.
 // `sigma_deg` is that of a typical rotation: all others, translations too, scale with it.

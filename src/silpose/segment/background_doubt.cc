@@ -10,8 +10,8 @@ namespace silpose {
 
 BackgroundDoubt doubt_background(const BackgroundModel& model, const BackgroundSamples& samples,
                                  const std::optional<Box>& region) {
-  constexpr int kStep = 4;      // every fourth pixel will do
-  constexpr float kSurely = 6;  // deviations
+  constexpr int kStep = 4;      // [guess] every fourth pixel suffices
+  constexpr float kSurely = 6;  // [guess] deviations
   const Box box = region.value_or(Box{0, 0, model.width(), model.height()});
   std::vector<float> gains;
   for (const ByteImage& image : samples.images) gains.push_back(exposure_gain(model, image));

@@ -11,17 +11,19 @@ namespace silpose {
 namespace {
 
 // Grey levels. Compressed video repeats blocks of an empty scene unchanged, so a deviation of 0 over time does not mean
-// no noise: where a person moves, blocks are coded again, and edges of the scene differ a little.
+// no noise: where a person moves, blocks are coded again, and edges of the scene differ a little. [tuned on rendered
+// clips: dance, jumping]
 constexpr std::array<float, 3> kNoiseFloor = {3.5f, 2.0f, 2.0f};
 constexpr double kNoiseOfSlope = 0.2, kPlateNoiseOfSlope = 0.4;
-// A plate is encoded and exposed by itself.
+// A plate is encoded and exposed by itself. [guess]
 constexpr std::array<float, 3> kPlateFloor = {3.0f, 1.8f, 1.8f};
-constexpr float kMadToDeviation = 1.4826f;
+constexpr float kMadToDeviation = 1.4826f;  // [definition] of a normal distribution
 // Where the subject is in nearly half of the samples the median deviation is the subject's: the lower third of the
-// deviations bounds it, loosely, as grey levels are coarse for so small a quantile.
+// deviations bounds it, loosely, as grey levels are coarse for so small a quantile. kLowerThirdToDeviation is a
+// [definition] for a normal distribution, the margin in grey levels a [guess].
 constexpr float kLowerThirdToDeviation = 2.32f, kLowerThirdMargin = 1.0f;
 
-// How many pictures are kept: enough for a median, bounded in memory.
+// [guess] How many pictures are kept: enough for a median, bounded in memory.
 constexpr int64_t kMaxSamples = 75, kMinSamples = 25;
 constexpr int64_t kSampleBytes = int64_t{256} << 20;
 

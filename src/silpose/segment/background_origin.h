@@ -12,7 +12,7 @@ struct BackgroundOfClip {};  // the whole clip; of a live camera online
 struct BackgroundOnline {
   bool knn = false;  // OpenCV's mixture: KNN (references.bib: zivkovic2006), otherwise MOG2 (zivkovic2004)
 };
-inline constexpr double kLongestLeadIn_s = 1e6;
+inline constexpr double kLongestLeadIn_s = 1e6;  // [guess] in effect unlimited
 struct BackgroundLeadIn {
   double seconds = 1;  // of the clip's beginning, in which the subject is not there; up to kLongestLeadIn_s
 };

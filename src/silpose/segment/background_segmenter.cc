@@ -69,7 +69,7 @@ class BackgroundSegmenter : public BlobSegmenter {
     return look;
   }
 
-  static constexpr double kGap = 0.003;  // of the picture's height: fingers and knees stay apart
+  static constexpr double kGap = 0.003;  // [guess] of the picture's height: fingers and knees stay apart
   BackgroundSegmenterOptions options_;
   ForegroundFinder finder_;
   CleanUpOptions blob_;
@@ -116,8 +116,8 @@ class OnlineSegmenter : public BlobSegmenter {
   [[nodiscard]] std::string name() const override { return options_.name; }
 
  private:
-  static constexpr int kHistory = 500;    // pictures until the oldest is forgotten
-  static constexpr int kNumLearned = 10;  // pictures before anything is trusted
+  static constexpr int kHistory = 500;    // [guess] pictures until the oldest is forgotten
+  static constexpr int kNumLearned = 10;  // [guess] pictures before anything is trusted
   BackgroundSegmenterOptions options_;
   cv::Ptr<cv::BackgroundSubtractor> subtractor_;
   cv::Size size_;

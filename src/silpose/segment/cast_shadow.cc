@@ -10,9 +10,11 @@
 namespace silpose {
 namespace {
 
+// [tuned on rendered clips of recorded motions: dance, jumping, kick, punch]
 constexpr float kDarkest = 0.4f, kLightest = 0.95f;  // factors of the background's luma that a shadow may have
 // Tint: how far the chroma is from the background's, scaled as the luma is, in deviations of noise. On the floor, at
 // the height of the feet, where shadows are to be expected, more passes for shadow; from kNoShadow on nothing.
+// [tuned on rendered clips of recorded motions: dance, jumping, kick, punch]
 constexpr float kTint = 1.6f, kTintOnFloor = 3.2f, kNoShadow = 4;
 constexpr float kBrightest = 1.2f;
 constexpr float kFloorFrom = 0.75f;     // of the subject's height, from the top

@@ -8,8 +8,8 @@
 namespace silpose {
 namespace {
 
-constexpr double kGap = 0.003;  // see CleanUpOptions::join_gap: a key cuts few limbs, and fingers and knees stay apart
-// Parts of the picture and of the screen's hull from which, and below which, a warning is due.
+constexpr double kGap = 0.003;  // CleanUpOptions::join_gap: a key cuts few limbs [tuned on the rendered walk, side]
+// [guess] Parts of the picture and of the screen's hull from which, and below which, a warning is due.
 constexpr double kMuchOutside = 0.01, kLittleScreen = 0.6;
 
 class ChromaSegmenter : public BlobSegmenter {

@@ -30,7 +30,7 @@ struct CleanUpOptions {
 // whole, and a larger blob elsewhere is not mistaken for the subject. The expected silhouette is ignored where these
 // blobs cover too little of it. Errors: throws std::invalid_argument where the garbage mask, or what is expected, has
 // another size.
-inline constexpr double kExpectedMargin = 0.08;
+inline constexpr double kExpectedMargin = 0.08;  // [guess]
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected = {});
 
 // The pixels that a garbage mask removes, of which nothing is known; null where there are none.

@@ -13,7 +13,7 @@
 
 namespace silpose {
 
-inline constexpr size_t kDepthSamples = 40;  // that a background is learned from
+inline constexpr size_t kDepthSamples = 40;  // [guess] that a background is learned from
 
 // Number i belongs to picture number i + offset.
 struct DepthFiles {

@@ -11,7 +11,7 @@ namespace silpose {
 namespace {
 
 constexpr uint16_t kUnknown = std::numeric_limits<uint16_t>::max();
-constexpr size_t kStrayFar = 20;  // one in this many depths may be too far by mistake
+constexpr size_t kStrayFar = 20;  // [guess] one in this many depths may be too far by mistake
 
 // What the background may seem nearer by, metres: a few deviations of a structured-light sensor, which grow with the
 // square of the depth, and a margin for edges and steps.
@@ -73,9 +73,9 @@ Mask nearer_than_background(const DepthImage& depth, const DepthImage& backgroun
 Image<float> depth_evidence(const DepthImage& depth, const DepthImage& background) {
   check(depth.width() == background.width() && depth.height() == background.height(),
         "depth_evidence: {}x{} before {}x{}", depth.width(), depth.height(), background.width(), background.height());
-  constexpr float kMaxFor = 6;                     // so that neighbours can outvote it
-  constexpr double kDeviations = 3;                // the tolerance is this many
-  constexpr double kSubjectRange_m = 4 / 2.50663;  // the subject may be anywhere in 4 m; over sqrt(2 pi)
+  constexpr float kMaxFor = 6;                     // [guess] so that neighbours can outvote it
+  constexpr double kDeviations = 3;                // [guess] the tolerance is this many
+  constexpr double kSubjectRange_m = 4 / 2.50663;  // [guess] the subject may be anywhere in 4 m; over sqrt(2 pi)
   Image<float> evidence(depth.width(), depth.height());
   parallel_for(static_cast<size_t>(depth.height()), 32, [&](size_t begin, size_t end) {
     for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {

@@ -10,7 +10,7 @@
 namespace silpose {
 
 // Texture is compared in windows of this many pixels on either side. Small ones: a shadow on the floor is seen at a low
-// angle and is a narrow strip.
+// angle and is a narrow strip. [guess]
 inline constexpr int kTextureReach = 1;
 
 // Rows of pictures [W, 3] in Y, Cr, Cb, of those within kTextureReach that there are.
@@ -40,7 +40,7 @@ struct EvidenceRow {
 // [W + 2 kTextureReach].
 void weigh_evidence_row(const EvidenceRow& row, float* least, float* evidence, uint8_t* differs);
 
-// Evidence against foreground is bounded, so that neighbours can outvote it.
+// Evidence against foreground is bounded, so that neighbours can outvote it. [guess]
 inline constexpr float kMostAgainst = 4;
 
 }  // namespace silpose

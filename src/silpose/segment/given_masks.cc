@@ -12,6 +12,7 @@ namespace {
 
 // Nearly all pixels, as far as compression and soft edges leave them.
 bool is_black_and_white(const ByteImage& image, bool& has_white) {
+  // [guess]
   constexpr int kBlack = 16, kWhite = 239;
   constexpr double kNearlyAll = 0.98;
   size_t num_black = 0, num_white = 0;
@@ -110,7 +111,7 @@ std::unique_ptr<Segmenter> make_given_masks(std::string name, std::optional<Vide
 }
 
 Result<bool> shows_masks(Video& video) {
-  constexpr int kEnough = 3;  // masks in which something is white: before them, all may be black
+  constexpr int kEnough = 3;  // [guess] masks in which something is white: before them, all may be black
   for (int found = 0; found < kEnough;) {
     const Result<std::optional<Frame>> frame = video.next();
     if (!frame) return frame.failure();

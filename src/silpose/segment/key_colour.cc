@@ -7,13 +7,14 @@
 namespace silpose {
 namespace {
 
-// A colour that may be a screen's: chroma in grey levels, and as a part of luma (which is not trusted below a floor).
+// [guess] A colour that may be a screen's: chroma in grey levels, and as a part of luma (which is not trusted below a
+// floor).
 constexpr float kLeastChroma = 12, kLeastSaturation = 0.33f, kDarkLuma = 40;
-constexpr float kHueWindowDeg = 20;
-// Hues (atan2 of Cb, Cr) from red to orange are skin's and wood's: not a screen's unless the user says so.
+constexpr float kHueWindowDeg = 20;  // [tuned on two real clips, with a green cloth and a yellow-green wall]
+// [guess] Hues (atan2 of Cb, Cr) from red to orange are skin's and wood's: not a screen's unless the user says so.
 constexpr float kSkinFromDeg = -75, kSkinToDeg = 20;
 
-constexpr float kDegree = std::numbers::pi_v<float> / 180;
+constexpr float kDegree = std::numbers::pi_v<float> / 180;  // [definition]
 
 LumaChroma to_colour(const KeyColour& key) {
   ByteImage pixel(1, 1, 3);
@@ -49,6 +50,7 @@ KeyColour to_key(const LumaChroma& colour) {
 
 Dominant dominant_colour(const BackgroundSamples& samples, const std::optional<KeyColour>& key,
                          const std::optional<Mask>& keep) {
+  // [guess]
   constexpr int kBins = 72, kStep = 4, kDegreesPerBin = 360 / kBins,
                 kReach = static_cast<int>(kHueWindowDeg) / kDegreesPerBin;
   struct Bin {

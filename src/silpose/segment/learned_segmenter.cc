@@ -17,14 +17,14 @@ namespace silpose {
 namespace {
 
 // Run again where it found a person, the network grows more confident of one: what is new has to convince it at first
-// sight.
+// sight. [guess]
 constexpr double kPresentAtFirst = 0.8, kStillPresent = 0.5;
 constexpr int kMaxLooks = 8;                              // until the square fits the person
 constexpr std::array<double, 3> kZooms = {1, 1.75, 3.5};  // small persons are detected in parts of the picture,
 constexpr int kSearchEvery = 10;                          // but not in every picture without a person
 constexpr double kMinSide = 24;                           // px, of a square with a person
-constexpr float kSureLogit = 5;
-constexpr size_t kMaxLearned = 40;
+constexpr float kSureLogit = 5;                           // belief from which a pixel is certain
+constexpr size_t kMaxLearned = 40;                        // pictures from which a background is learned
 
 bool is_settled(const PictureSquare& before, const PictureSquare& after) {
   const double turned = std::remainder(after.turn_rad - before.turn_rad, 2 * std::numbers::pi);

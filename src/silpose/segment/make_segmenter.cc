@@ -18,7 +18,7 @@
 namespace silpose {
 namespace {
 
-// Fractions of the picture (or the region) from which a warning is due.
+// [guess] Fractions of the picture (or the region) from which a warning is due.
 constexpr double kMuchHalfCovered = 0.002, kLittleMoves = 0.002;
 
 std::vector<std::string> doubts(const std::string& input, const BackgroundModel& model,

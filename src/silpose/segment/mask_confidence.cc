@@ -10,8 +10,8 @@
 namespace silpose {
 namespace {
 
-constexpr uint8_t kChanged = 64;
-constexpr double kSharpEdge = 0.005;  // of the larger side of the mask's box, on either side
+constexpr uint8_t kChanged = 64;      // [guess] of 255
+constexpr double kSharpEdge = 0.005;  // [guess] of the larger side of the mask's box, on either side
 
 }  // namespace
 

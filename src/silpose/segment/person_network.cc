@@ -8,11 +8,13 @@ namespace silpose {
 namespace {
 
 constexpr const char *kLandmarkFile = "pose_landmark_full.tflite", *kDetectionFile = "pose_detection.tflite";
+// [definition] of the network's files: sizes of its inputs, pixels, and number of its anchors.
 constexpr int kReadSize = 256, kDetectSize = 224;
 constexpr size_t kNumAnchors = 2254;
-constexpr double kSureEnough = 0.5, kSamePerson = 0.3;
+constexpr double kSureEnough = 0.5, kSamePerson = 0.3;  // [guess] probability; overlap of two boxes
 
 // Which of the network's landmarks are points of the human body. Those of the face are no joints.
+// [definition]
 constexpr std::pair<const char*, size_t> kOfBody[] = {
     {"left_upper_arm", 11}, {"right_upper_arm", 12}, {"left_forearm", 13}, {"right_forearm", 14}, {"left_hand", 15},
     {"right_hand", 16},     {"left_thigh", 23},      {"right_thigh", 24},  {"left_shin", 25},     {"right_shin", 26},

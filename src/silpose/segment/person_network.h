@@ -27,6 +27,7 @@ struct PersonLandmark {
 };
 
 // Of the landmarks, the 33 of the body come first; then the middle of the person and a point straight above it.
+// [definition]
 inline constexpr size_t kPersonMiddle = 33, kAbovePerson = 34, kNumPersonLandmarks = 39;
 
 struct PersonReading {

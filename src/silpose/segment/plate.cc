@@ -10,9 +10,9 @@
 namespace silpose {
 namespace {
 
-constexpr double kMargin = 0.04;  // of the larger side of the mask's box
-constexpr size_t kLeastTimes = 5;
-constexpr double kLeastShare = 0.1;  // of the pictures
+constexpr double kMargin = 0.04;     // [guess] of the larger side of the mask's box
+constexpr size_t kLeastTimes = 5;    // [guess]
+constexpr double kLeastShare = 0.1;  // [guess] of the pictures
 
 }  // namespace
 

@@ -13,20 +13,23 @@
 namespace silpose {
 namespace {
 
-constexpr float kLeastShare = 0.08f;  // of the picture, for a screen
+constexpr float kLeastShare = 0.08f;  // [guess] of the picture, for a screen
 
-// Deeper shadow than this part of the screen's luma is treated as something black.
+// Deeper shadow than this part of the screen's luma is treated as something black. [tuned on two real clips, with a
+// green cloth and a yellow-green wall]
 constexpr float kDeepestShadow = 0.2f;
 constexpr float kAskedInShadow = 0.7f;
 // Hue may deviate this far (as tangent) without loss; beyond, this much of the likeness is lost for each unit.
+// [tuned on the same two clips]
 constexpr float kHueSlack = 0.35f, kHueLoss = 1.3f;
 
+// [guess]
 constexpr int kCell = 8;                                  // pixels; the screen's colour changes slowly
 constexpr float kSureLikeness = 0.65f, kSureCell = 0.9f;  // parts: what the model is learned from
 constexpr float kLeastSeen = 0.02f;                       // of a neighbourhood, for its colour to be known from there
 constexpr float kLeastPart = 0.1f;                        // of the largest piece of screen, for another piece to count
 constexpr double kEdgeOfScreen = 0.006;                   // of the picture's height: colours mix there
-constexpr int kEdgeWindow = 7;                            // pixels
+constexpr int kEdgeWindow = 7;                            // pixels [tuned on a rendered dance: 5 or 7]
 constexpr double kFlatLuma = 12;                          // grey levels of deviation below which the luma says little
 
 // 1 as the lit screen, 0 as anything neutral or of another hue. `project` as in ScreenModel.
@@ -140,7 +143,7 @@ cv::Mat screen_matte(const Image<float>& project, const ByteImage& luma_chroma) 
 // very edge.
 void find_extent(const BackgroundSamples& samples, ScreenModel& model) {
   const Image<float>& project = model.project;
-  constexpr size_t kEnough = 24;  // samples
+  constexpr size_t kEnough = 24;  // [guess] samples
   const size_t step = (samples.images.size() + kEnough - 1) / kEnough;
   cv::Mat times(project.height(), project.width(), CV_8U, cv::Scalar::all(0));
   size_t seen = 0;

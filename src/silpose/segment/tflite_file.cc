@@ -11,6 +11,7 @@
 namespace silpose {
 namespace {
 
+// [guess] Larger files, tensors and steps are refused as damaged.
 constexpr size_t kMaxFileBytes = size_t{1} << 30;
 constexpr int64_t kMaxElements = int64_t{1} << 26;  // of one tensor
 constexpr int kMaxSize = 1 << 20;                   // of one axis

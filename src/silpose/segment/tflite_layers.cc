@@ -16,7 +16,7 @@ DictValue integers(const std::vector<int>& values) {
   return DictValue::arrayInt(values.data(), static_cast<int>(values.size()));
 }
 
-constexpr int kMaxFilter = 1024;  // along one axis
+constexpr int kMaxFilter = 1024;  // [guess] along one axis
 
 // Windows of a convolution along one axis: how many, and what has to be added before and after the picture.
 struct Windows {

@@ -8,7 +8,8 @@
 namespace silpose {
 namespace {
 
-// Half a second or so: a walker's area changes by a fifth in that time. A new level is accepted once it is the median.
+// [guess] Half a second or so: a walker's area changes by a fifth in that time. A new level is accepted once it is the
+// median.
 constexpr size_t kWindow = 15, kLeast = 5;
 constexpr double kMaxGrowth = 1.5;
 constexpr double kTrustAtBorder = 0.5, kTrustAfterJump = 0.25;

@@ -16,7 +16,7 @@ namespace {
 constexpr double kRightBody = 2, kAnyBody = 20;
 // Some errors are the same in all frames: the subject is not built as the body is, and a network has a bias for each
 // person and view. All frames together then have this share of the information of a single frame.
-// [tuned: so that nine in ten joints and knees of the experiment `real` lie within the claimed 90 %]
+// [tuned on the experiment `real`: nine in ten joints and knees lie within the claimed 90 %]
 constexpr double kSilhouetteWorth = 0.05, kKeypointWorth = 0.35;
 constexpr double kFreeInformation = 1e-3;  // [guess] of DOF without a prior: small, so that matrices are invertible
 

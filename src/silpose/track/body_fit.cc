@@ -28,21 +28,22 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// [guess] Blur and number of steps of each stage.
 constexpr FitStage kStages[] = {{Blur::k8, 6}, {Blur::k4, 6}};
 // The noise of the silhouettes follows from how well they fit, and the girths from where the joints are: each round
-// starts from the result of the one before.
+// starts from the result of the one before. [guess]
 constexpr int kRounds = 3;
 constexpr SmallestGain kSmallestGain{.relative = 1e-3};
-constexpr double kRestWeight = 0.2;    // plausibility.h
-constexpr double kMaxRotation = 0.35;  // radians a step
+constexpr double kRestWeight = 0.2;    // [guess] RestPull::weight of one instant (plausibility.h)
+constexpr double kMaxRotation = 0.35;  // [guess] radians per step
 constexpr size_t kInstants = 16;       // [guess] of the clip, evenly spread: neighbours carry the same information
 // Errors of masks and networks are correlated between instants: all instants together count as this many independent
 // ones.
-// [tuned: simulated people; measured on others: docs/results.md, "Real people": 4 has the smallest errors; with 2, 8
-// and 16 single tracks get much worse]
+// [tuned on simulated people] [measured: experiment human-proportions] (other people, docs/notebook/real-people.md): 4
+// has the smallest errors; with 2, 8 and 16 single tracks get much worse.
 constexpr double kIndependentInstants = 4;
 constexpr double kStatureDeviation = 0.01;  // [guess] of a given stature, relative: shoes, posture
-// Of a size by the floor, relative: as far as rendered subjects were off (docs/results.md).
+// Of a size by the floor, relative. [tuned on two rendered subjects, whose size was 2 % off (docs/results.md)]
 constexpr double kLeastSizeDeviation = 0.02;
 
 // The unknowns: lengths [S] of all instants, and a pose [D] each.
@@ -190,7 +191,7 @@ class Problem {
 
 // Derivative of the stature by the lengths [S]. Bones of both sides are lengthened together: the longer leg stands.
 VectorXd stature_by_lengths(const BodyModel& body) {
-  constexpr double kLonger = 0.01;  // metres
+  constexpr double kLonger = 0.01;  // [guess] metres: the step of a finite difference
   const Skeleton stretched = stretchable(body).skeleton;
   const std::vector<int> shape = shape_dofs(stretched);
   const auto name = [&](size_t s) { return without_side(stretched.dofs()[static_cast<size_t>(shape[s])].name); };

@@ -12,9 +12,9 @@
 namespace silpose {
 namespace {
 
-// How many frames the estimate of the noise looks back.
+// [guess] Frames over which the estimate of the noise is averaged.
 constexpr double kNoiseMemory = 10;
-constexpr double kFarBetter = 0.5;  // of the noise until now
+constexpr double kFarBetter = 0.5;  // [guess] of the noise until now
 
 MixtureOptions mixture_options(const TrackerOptions& options) {
   return {.num_hypotheses = *options.num_hypotheses, .seed = options.seed};

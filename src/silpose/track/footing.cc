@@ -6,8 +6,8 @@
 namespace silpose {
 namespace {
 
-constexpr double kSlideDeviation = 0.016;  // metres in a second; its square grows with time
-// From these on a point no longer rests on the floor; below, the less so the nearer it comes.
+constexpr double kSlideDeviation = 0.016;  // [guess] metres in a second; its square grows with time
+// [guess] From these on a point no longer rests on the floor; below, the less so the nearer it comes.
 constexpr double kHighest = 0.05, kFastest = 0.5;  // metres, metres per second
 
 // 1 at 0, 0 from 1 on. Source: Tukey's biweight.

@@ -14,8 +14,10 @@ namespace {
 
 using Eigen::VectorXd;
 
+// [guess] Sweeps over all girths; the change that is tried first and the largest change of one step, both as shares of
+// the girth; the blur.
 constexpr int kSweeps = 2;
-constexpr double kProbe = 0.04, kLongestStep = 0.1;  // shares
+constexpr double kProbe = 0.04, kLongestStep = 0.1;
 constexpr Blur kBlur = Blur::k4;
 
 class Cost {

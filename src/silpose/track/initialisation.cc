@@ -19,20 +19,21 @@
 namespace silpose {
 namespace {
 
-// All candidates are fitted at these; the best of each heading at the finer ones.
+// [guess] All candidates are fitted at these; the best of each heading at the finer ones.
 constexpr FitStage kCoarseStages[] = {{Blur::k32, 3}, {Blur::k16, 4}};
 constexpr FitStage kFineStages[] = {{Blur::k16, 2}, {Blur::k8, 5}, {Blur::k4, 4}};
 constexpr FitStage kVariantStages[] = {{Blur::k8, 4}, {Blur::k4, 4}};  // the better ones advance to the second
 constexpr FitStage kDistantStages[] = {{Blur::k8, 6}, {Blur::k4, 8}};
 constexpr uint64_t kDistantStream = std::numeric_limits<uint64_t>::max();  // of random numbers, and those below
-// E of a start that leaves nothing to explain; and how far a variant must be from its origin to be worth a fit, metres.
+// [guess] E of a start that leaves nothing to explain; and how far a variant must be from its origin to be worth a fit,
+// metres.
 constexpr double kExplained = 3, kNovelty = 0.15;
-constexpr double kTwoAtOnce = 0.3;  // share of the random limbs that come in pairs
-// A round of other limbs that leaves more than this of the cost is stale; as many of them in a row end a search. So
-// does an E, after as many rounds, that is far more than is left elsewhere.
+constexpr double kTwoAtOnce = 0.3;  // [guess] share of the random limbs that come in pairs
+// [guess] A round of other limbs that leaves more than this of the cost is stale; as many of them in a row end a
+// search. So does an E, after as many rounds, that is far more than is left elsewhere.
 constexpr double kStaleCost = 0.97, kHopelessRatio = 5, kHopeless = 100;
 constexpr int kStaleRounds = 2;
-constexpr double kContradicted = 20;  // by keypoints, more than the best start
+constexpr double kContradicted = 20;  // [guess] by keypoints, more than the best start
 
 // Loosely about a candidate: joints by half their range, the trunk's tilt by 20 degrees; where the body is, and which
 // way it faces, is free.

@@ -41,7 +41,7 @@ class KeypointSides {
 // and times [T] -> [T].
 std::vector<double> exchanged_sides(std::span<const Keypoints3D* const> keypoints, std::span<const int64_t> times_ns);
 
-// Keypoints are not used where an exchange is more probable than this, which is: more probable than not.
+// Keypoints are not used where an exchange is more probable than this, which is: more probable than not. [definition]
 inline constexpr double kExchanged = 0.5;
 
 }  // namespace silpose

@@ -37,6 +37,7 @@ std::vector<Eigen::Vector3d> positions(const Skeleton& skeleton, std::span<const
 
 double reach_for(const Skeleton& skeleton, const Limb& limb, std::span<const LimbPoint> points,
                  std::span<const Eigen::Vector3d> targets, const Eigen::Matrix3d& seen, std::vector<double>& pose) {
+  // [guess] So are the 5 mm at which a point is reached, and the 0.7 rad that a step turns at most, below.
   constexpr int kIterations = 15, kLeastIterations = 3;
   constexpr double kStale = 0.98;  // of the distance before: what is out of reach gets no nearer
   constexpr double kHold = 1e-4;   // m^2 / rad^2: keeps twists that no point shows where they are

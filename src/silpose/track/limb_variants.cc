@@ -31,7 +31,7 @@ std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::
 
 std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Limb& limb, std::span<const double> pose,
                                                 const Eigen::Vector3d& eye) {
-  constexpr double kReached = 0.05;  // metres
+  constexpr double kReached = 0.05;  // [guess] metres
   std::vector<std::vector<double>> variants;
   const std::vector<LimbPoint> points = limb_points(body, limb);
   if (points.size() < 2) return variants;

@@ -16,7 +16,7 @@ namespace {
 
 using Renderers = std::vector<std::shared_ptr<const BatchRenderer>>;
 
-constexpr int kCroppedSize = 64;  // raster pixels of the thesis' cropped silhouettes
+constexpr int kCroppedSize = 64;  // [guess] raster pixels of the thesis' cropped silhouettes
 
 bool is_root(const Dof& dof) { return dof.joint_idx == 0; }
 
@@ -90,7 +90,7 @@ class Recognition {
     for (const PinholeCamera& camera : options.cameras) proposals_.emplace_back(options.body, camera);
   }
   [[nodiscard]] StateBatch poses(std::span<const Observation> observations) const {
-    constexpr int kCandidates = 4;
+    constexpr int kCandidates = 4;  // [guess]
     for (size_t c = 0; c < proposals_.size(); ++c) {
       if (observations[c].box().empty() || observations[c].keypoints_3d.empty()) continue;
       if (!make_keypoint_term(*body_, cameras_[c], observations[c], EvidenceKind::kKeypoints)) continue;

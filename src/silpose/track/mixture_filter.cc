@@ -12,12 +12,13 @@
 namespace silpose {
 namespace {
 
-// How well a starting pose is known, and how fast a body may be moving when it is first seen.
+// [guess] How well a starting pose is known, and how fast a body may be moving when it is first seen.
 constexpr double kStartAngle = 0.15, kStartMetres = 0.05;  // radians, metres
 constexpr double kStartTurn = 2.0, kStartSpeed = 1.0;      // per second
-// A limb that jumped may be anywhere near where it landed.
+// [guess] A limb that jumped may be anywhere near where it landed.
 constexpr double kJumpAngle = 0.5, kJumpTurn = 3.0;
-constexpr double kCoastDecay_per_s = 3;  // unseen, a body is taken to slow down
+constexpr double kCoastDecay_per_s = 3;  // unseen, a body is assumed to slow down
+// [guess] Blur and number of steps of each stage.
 constexpr FitStage kTrackingStages[] = {{Blur::k8, 4}, {Blur::k4, 3}, {Blur::k2, 3}};
 constexpr FitStage kJumpStages[] = {{Blur::k8, 2}, {Blur::k4, 3}, {Blur::k2, 3}};
 

@@ -13,7 +13,7 @@
 namespace silpose {
 namespace {
 
-constexpr double kIntervalOfDeviation = 1.645;  // half of a 90 % interval [by definition: of a normal distribution]
+constexpr double kIntervalOfDeviation = 1.645;  // half of a 90 % interval [definition] of a normal distribution
 constexpr double kGap_s = 0.2;                  // [guess] stretches that are closer than this are joined
 constexpr size_t kMostStretches = 4;            // [guess] that a line lists
 constexpr double kTwistCosine = 0.5;            // [guess] an axis nearer to the bone than 60 degrees twists it

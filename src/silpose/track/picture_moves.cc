@@ -20,8 +20,8 @@ Eigen::Matrix3d across(const Eigen::Vector3d& eye, const Eigen::Vector3d& point)
 
 std::vector<double> exchanged_in_picture(const BodyModel& body, const Limb& a, const Limb& b,
                                          std::span<const double> pose, const Eigen::Vector3d& eye, Rng& rng) {
-  constexpr int kTries = 12;      // of a limb: from the other's angles, from its own, and at random
-  constexpr double kNear = 0.05;  // metres: of a try that will do
+  constexpr int kTries = 12;      // [guess] of a limb: from the other's angles, from its own, and at random
+  constexpr double kNear = 0.05;  // [guess] metres: of a try that will do
   const Skeleton& skeleton = body.skeleton;
   const std::vector<LimbPoint> of_a = limb_points(body, a), of_b = limb_points(body, b);
   if (of_a.size() != of_b.size() || of_a.size() < 2) return {};

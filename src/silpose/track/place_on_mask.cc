@@ -13,7 +13,7 @@
 namespace silpose {
 namespace {
 
-constexpr double kPlacingResolution = 96;  // raster pixels along the longer side of the silhouette
+constexpr double kPlacingResolution = 96;  // [guess] raster pixels along the longer side of the silhouette
 
 struct Blob {
   double area = 0;

@@ -14,6 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+// [guess] All of them. Student's t about rest itself is kept as it helps on degraded masks (docs/notebook/tracking.md).
 constexpr double kLimitDeviation = 0.02;    // radians beyond a limit that cost 1
 constexpr double kRestFreedom = 2;          // degrees of freedom of Student's t
 constexpr double kOverlapDeviation = 0.02;  // metres that two spheres overlap, beyond what they do at rest

@@ -6,7 +6,7 @@
 namespace silpose {
 namespace {
 
-// Particles within this many frames' noise of each other, in the root mean square over DOF, are one cluster.
+// [guess] Particles within this many frames' noise of each other, in the root mean square over DOF, are one cluster.
 constexpr double kClusterBandwidth = 2;
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace silpose {
 namespace {
 
-constexpr SmallestGain kSmallestGain{.absolute = 0.05};
+constexpr SmallestGain kSmallestGain{.absolute = 0.05};  // [guess] of E
 
 struct Point {
   Eigen::VectorXd pose;

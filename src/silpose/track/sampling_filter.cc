@@ -11,9 +11,9 @@
 namespace silpose {
 namespace {
 
-// Particles start within the noise of this many frames of the pose that descent found.
+// [guess] Particles start within the noise of this many frames of the pose that descent found.
 constexpr double kStartFrames = 4;
-constexpr double kSurvivalRate = 0.5;
+constexpr double kSurvivalRate = 0.5;  // of each annealing layer
 
 }  // namespace
 

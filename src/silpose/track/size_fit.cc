@@ -10,7 +10,7 @@
 namespace silpose {
 namespace {
 
-constexpr double kLowestCamera = 0.2;  // metres above the floor: below, the floor is seen at too small an angle
+constexpr double kLowestCamera = 0.2;  // [guess] metres above the floor: below, the floor is seen at too small an angle
 
 }  // namespace
 

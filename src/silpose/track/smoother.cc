@@ -16,6 +16,7 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+// [guess] Largest rotation (radians) and translation (metres) of one step.
 constexpr SmallestGain kSmallestGain{.relative = 1e-4};
 constexpr double kMaxRotation = 0.35, kMaxTranslation = 0.3;
 

@@ -26,7 +26,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-// How many instants are tried as the start, and how far apart they are at least, seconds.
+// [guess] How many instants are tried as the start, and how far apart they are at least, seconds.
 constexpr size_t kNumStarts = 3;
 constexpr double kStartsApart_s = 0.5;
 
@@ -354,9 +354,11 @@ class ClipTracker {
   }
 
   static constexpr size_t kNumPasses = 3;
-  static constexpr double kPassShare = 0.35;     // of the whole work, one pass over the whole clip
-  static constexpr double kTransitionScale = 4;  // times acceleration_deviation: hypotheses are fits, not truths
-  static constexpr double kTransitionCap = 30;   // of one DOF
+  static constexpr double kPassShare = 0.35;  // [guess] of the whole work, one pass over the whole clip
+  // [guess] kTransitionScale: times acceleration_deviation, as hypotheses are fits, not truths. kTransitionCap: per
+  // DOF.
+  static constexpr double kTransitionScale = 4;
+  static constexpr double kTransitionCap = 30;
 
   TrackerOptions options_;
   JudgedClip clip_;

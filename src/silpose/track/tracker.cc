@@ -30,12 +30,13 @@ constexpr double kLongestCoast_s = 1.0;
 // then at growing intervals.
 constexpr double kGoodAccuracy = 0.97;
 constexpr double kFirstReinitialise_s = 0.12;
-constexpr double kReinitialiseLater = 4;  // times the interval before [tuned: as kReinitialiseShare]
+constexpr double kReinitialiseLater = 4;  // times the interval before [tuned on the runs of kReinitialiseShare]
 // [guess] The interval is short again after the overlap falls below its recent mean, by more than its recent
 // deviations. Bad masks alone do not start a search again and again.
 constexpr double kLeastLost = 0.03, kLostDeviations = 3, kRecent_s = 1;
-// Of one search; the next has other headings. kReinitialiseShare: of other limbs that are fitted finely. [tuned: with
-// kReinitialiseLater, for time at about the same accuracy, docs/results.md]
+// Of one search; the next has other headings. kReinitialiseShare: of other limbs that are fitted finely. [tuned on
+// human-start with masks of an IoU of 0.92, and on the first seeds of human-walk] together with kReinitialiseLater, for
+// time at about the same accuracy (docs/notebook/speed.md).
 constexpr int kReinitialiseHeadings = 3, kReinitialiseRounds = 2, kReinitialisePatience = 2;
 constexpr double kReinitialiseShare = 0.5;
 // [guess] A search turns the tracked body no further than this (cosine of 70 degrees), unless keypoints have faced
