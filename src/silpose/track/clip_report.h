@@ -19,14 +19,15 @@ std::vector<StepReport> waiting_reports(const JudgedClip& clip);
 
 // What smoothed instants [N] are reported from.
 struct SmoothedClip {
-  const ClipEvidence& evidence;                  // [N], with the noise that smoothing found
-  const SmoothedPoses& smoothed;                 // [N]
-  std::span<const Hypotheses> hypotheses;        // [N] of all passes
+  const ClipEvidence& evidence;                   // [N], with the noise that smoothing found
+  const SmoothedPoses& smoothed;                  // [N]
+  std::span<const Hypotheses> hypotheses;         // [N] of all passes
   std::span<const std::vector<double>> energies;  // [N][K] of these
 };
 
 // Fills in poses, spreads, states and overlap of reports [N] of these instants. The spread is the covariance of the
-// fit, what the passes disagree about (clip_spread.h), and the error of the body (body_error.h). `options` are resolved.
+// fit, what the passes disagree about (clip_spread.h), and the error of the body (body_error.h). `options` are
+// resolved.
 void report_smoothed(const TrackerOptions& options, const SmoothedClip& clip, std::span<StepReport> reports);
 
 }  // namespace silpose
