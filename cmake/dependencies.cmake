@@ -11,7 +11,6 @@ find_package(OpenSSL REQUIRED COMPONENTS Crypto)
 find_package(meshoptimizer REQUIRED)
 find_package(hwy REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(hwy REQUIRED)
 # FlatBuffers for its headers alone, which need no target: its CMake package asks for the compiler's, too.
 find_path(FLATBUFFERS_INCLUDE_DIR flatbuffers/flatbuffers.h REQUIRED)
 

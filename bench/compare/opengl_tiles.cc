@@ -45,6 +45,50 @@ GLuint compile(GLenum kind, const std::string& text) {
   return shader;
 }
 
+// A vertex in the buffer: its position, then sets of bones and their weights.
+struct BoneSet {
+  std::array<uint8_t, kSet> bone;
+  std::array<float, kSet> weight;
+};
+
+size_t vertex_stride(int num_sets) { return sizeof(Eigen::Vector3f) + static_cast<size_t>(num_sets) * sizeof(BoneSet); }
+
+// The vertices that are used, in their new order; ~0u: not used.
+std::vector<std::byte> pack_vertices(const Mesh& mesh, const SkinWeights& skin, std::span<const uint32_t> new_from_old,
+                                     size_t num_used, int num_sets) {
+  const size_t stride = vertex_stride(num_sets);
+  std::vector<std::byte> vertices(stride * num_used);
+  for (size_t v = 0; v < new_from_old.size(); ++v) {
+    if (new_from_old[v] == ~0u) continue;
+    std::byte* const vertex = &vertices[stride * new_from_old[v]];
+    std::memcpy(vertex, mesh.vertices[v].data(), sizeof(Eigen::Vector3f));
+    std::vector<BoneSet> sets(static_cast<size_t>(num_sets), BoneSet{});
+    for (uint32_t i = skin.row_start[v]; i < skin.row_start[v + 1]; ++i) {
+      const size_t slot = i - skin.row_start[v];
+      sets[slot / kSet].bone[slot % kSet] = static_cast<uint8_t>(skin.joint_idx[i]);
+      sets[slot / kSet].weight[slot % kSet] = skin.weight[i];
+    }
+    std::memcpy(vertex + sizeof(Eigen::Vector3f), sets.data(), sets.size() * sizeof(BoneSet));
+  }
+  return vertices;
+}
+
+// Makes the current vertex array read the current buffer as pack_vertices() fills it.
+void describe_vertices(int num_sets) {
+  const auto at = [](size_t offset) { return reinterpret_cast<const void*>(offset); };
+  const auto step = static_cast<GLsizei>(vertex_stride(num_sets));
+  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, step, nullptr);
+  glEnableVertexAttribArray(0);
+  for (int set = 0; set < num_sets; ++set) {
+    const size_t offset = sizeof(Eigen::Vector3f) + static_cast<size_t>(set) * sizeof(BoneSet);
+    const auto bones = static_cast<GLuint>(1 + 2 * set), weights = bones + 1;
+    glVertexAttribIPointer(bones, kSet, GL_UNSIGNED_BYTE, step, at(offset));
+    glVertexAttribPointer(weights, kSet, GL_FLOAT, GL_FALSE, step, at(offset + offsetof(BoneSet, weight)));
+    glEnableVertexAttribArray(bones);
+    glEnableVertexAttribArray(weights);
+  }
+}
+
 }  // namespace
 
 OpenGlTiles::OpenGlTiles(const SilhouetteScene& scene, const OpenGlSetup& setup, int number)
@@ -106,26 +150,8 @@ void OpenGlTiles::make_mesh() {
   for (size_t v = 0; v < num_vertices; ++v) {
     num_bones_ = std::max(num_bones_, static_cast<int>(skin.row_start[v + 1] - skin.row_start[v]));
   }
-  // A vertex: position, then sets of four bones and their weights.
-  struct Set {
-    std::array<uint8_t, kSet> bone;
-    std::array<float, kSet> weight;
-  };
   const int num_sets = (num_bones_ + kSet - 1) / kSet;
-  const size_t stride = sizeof(Eigen::Vector3f) + static_cast<size_t>(num_sets) * sizeof(Set);
-  std::vector<std::byte> vertices(stride * num_used);
-  for (size_t v = 0; v < num_vertices; ++v) {
-    if (new_from_old[v] == ~0u) continue;
-    std::byte* const vertex = &vertices[stride * new_from_old[v]];
-    std::memcpy(vertex, mesh.vertices[v].data(), sizeof(Eigen::Vector3f));
-    std::vector<Set> sets(static_cast<size_t>(num_sets), Set{});
-    for (uint32_t i = skin.row_start[v]; i < skin.row_start[v + 1]; ++i) {
-      const size_t slot = i - skin.row_start[v];
-      sets[slot / kSet].bone[slot % kSet] = static_cast<uint8_t>(skin.joint_idx[i]);
-      sets[slot / kSet].weight[slot % kSet] = skin.weight[i];
-    }
-    std::memcpy(vertex + sizeof(Eigen::Vector3f), sets.data(), sets.size() * sizeof(Set));
-  }
+  const std::vector<std::byte> vertices = pack_vertices(mesh, skin, new_from_old, num_used, num_sets);
 
   GLuint array = 0;
   std::array<GLuint, 2> buffers{};
@@ -137,18 +163,7 @@ void OpenGlTiles::make_mesh() {
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, buffers[1]);
   glBufferData(GL_ELEMENT_ARRAY_BUFFER, static_cast<GLsizeiptr>(short_indices.size() * sizeof(uint16_t)),
                short_indices.data(), GL_STATIC_DRAW);
-  const auto at = [](size_t offset) { return reinterpret_cast<const void*>(offset); };
-  const auto step = static_cast<GLsizei>(stride);
-  glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, step, nullptr);
-  glEnableVertexAttribArray(0);
-  for (int set = 0; set < num_sets; ++set) {
-    const size_t offset = sizeof(Eigen::Vector3f) + static_cast<size_t>(set) * sizeof(Set);
-    const auto bones = static_cast<GLuint>(1 + 2 * set), weights = bones + 1;
-    glVertexAttribIPointer(bones, kSet, GL_UNSIGNED_BYTE, step, at(offset));
-    glVertexAttribPointer(weights, kSet, GL_FLOAT, GL_FALSE, step, at(offset + offsetof(Set, weight)));
-    glEnableVertexAttribArray(bones);
-    glEnableVertexAttribArray(weights);
-  }
+  describe_vertices(num_sets);
 }
 
 void OpenGlTiles::make_program() {

@@ -136,6 +136,46 @@ void warn_of_camera(const PinholeCamera& camera, const CameraFit& fit, std::vect
   }
 }
 
+// How well each camera fits, with warnings of those that fit badly.
+void judge_cameras(const Bundle& bundle, const std::vector<Eigen::Vector3d>& points,
+                   const std::vector<BundleView>& views, const std::vector<LensFit>& lenses,
+                   CameraCalibration& result) {
+  double sum = 0;
+  for (size_t c = 0; c < bundle.cameras.size(); ++c) {
+    CameraFit fit{.focal_sd_px = lenses[c].focal_sd_px, .coverage = coverage(bundle.cameras[c], c, views)};
+    double of_camera = 0;
+    for (const BundleView& view : views) {
+      if (view.camera != c) continue;
+      of_camera += view_error(bundle, points, view);
+      ++fit.num_views;
+    }
+    fit.rms_px = std::sqrt(of_camera / static_cast<double>(points.size() * std::max(1, fit.num_views)));
+    sum += of_camera;
+    warn_of_camera(bundle.cameras[c], fit, result.warnings);
+    result.fits.push_back(fit);
+  }
+  result.rms_px = std::sqrt(sum / static_cast<double>(points.size() * views.size()));
+}
+
+// Moves the cameras into the world whose floor the board lay on at `place`.
+void stand_on_board(const Board& board, const Rigid3& place, Bundle& bundle, std::vector<std::string>& warnings) {
+  set_world(floor_from_world(board, place, bundle.cameras[0].centre_in_world()), bundle.cameras);
+  double up = 0;
+  for (const PinholeCamera& camera : bundle.cameras) up -= camera.cam_from_world.rotation(1, 1);
+  if (up < kUpright * static_cast<double>(bundle.cameras.size())) {
+    warnings.emplace_back("the cameras would be lying on their sides: did the board lie on the floor then?");
+  }
+}
+
+// Moves the cameras into a world in which the first one is level.
+void assume_level(Bundle& bundle, std::vector<std::string>& warnings) {
+  const PinholeCamera& first = bundle.cameras[0];
+  const PinholeCamera level = default_camera(first.width, first.height);
+  warnings.push_back(
+      fmt::format("the floor was not specified: camera {} is assumed to be level and 1.5 m above it", first.name));
+  set_world(level.cam_from_world.inverse() * first.cam_from_world, bundle.cameras);
+}
+
 }  // namespace
 
 Result<CameraCalibration> calibrate_cameras(const Board& board, const std::vector<CameraSightings>& cameras,
@@ -170,40 +210,16 @@ Result<CameraCalibration> calibrate_cameras(const Board& board, const std::vecto
   }
 
   CameraCalibration result;
-  double sum = 0;
-  for (size_t c = 0; c < cameras.size(); ++c) {
-    CameraFit fit{.focal_sd_px = lenses[c].focal_sd_px, .coverage = coverage(bundle.cameras[c], c, views)};
-    double of_camera = 0;
-    for (const BundleView& view : views) {
-      if (view.camera != c) continue;
-      of_camera += view_error(bundle, points, view);
-      ++fit.num_views;
-    }
-    fit.rms_px = std::sqrt(of_camera / static_cast<double>(points.size() * std::max(1, fit.num_views)));
-    sum += of_camera;
-    warn_of_camera(bundle.cameras[c], fit, result.warnings);
-    result.fits.push_back(fit);
-  }
-  result.rms_px = std::sqrt(sum / static_cast<double>(points.size() * views.size()));
+  judge_cameras(bundle, points, views, lenses, result);
   if (cameras.size() > 1 && views.size() < num_seen - num_seen / 4) {
     result.warnings.push_back(
         fmt::format("{} of {} views contradict the others and were left out; are the videos in step?",
                     num_seen - views.size(), num_seen));
   }
-
   if (floor_instant) {
-    const Rigid3& place = bundle.places[place_of.at(*floor_instant)];
-    set_world(floor_from_world(board, place, bundle.cameras[0].centre_in_world()), bundle.cameras);
-    double up = 0;
-    for (const PinholeCamera& camera : bundle.cameras) up -= camera.cam_from_world.rotation(1, 1);
-    if (up < kUpright * static_cast<double>(cameras.size())) {
-      result.warnings.emplace_back("the cameras would be lying on their sides: did the board lie on the floor then?");
-    }
+    stand_on_board(board, bundle.places[place_of.at(*floor_instant)], bundle, result.warnings);
   } else {
-    const PinholeCamera level = default_camera(cameras[0].width, cameras[0].height);
-    set_world(level.cam_from_world.inverse() * bundle.cameras[0].cam_from_world, bundle.cameras);
-    result.warnings.push_back(fmt::format(
-        "the floor was not specified: camera {} is assumed to be level and 1.5 m above it", cameras[0].name));
+    assume_level(bundle, result.warnings);
   }
   result.cameras = std::move(bundle.cameras);
   return result;

@@ -33,12 +33,6 @@ FilterReport AnnealedFilter::step(const Propagate& propagate, const Diffuse& dif
   return report;
 }
 
-FilterReport AnnealedFilter::search(const Diffuse& diffuse, const LogLikelihood& log_likelihood) {
-  FilterReport report;
-  run_layers(now_.step++, diffuse, log_likelihood, report);
-  return report;
-}
-
 void AnnealedFilter::run_layers(uint64_t step, const Diffuse& diffuse, const LogLikelihood& log_likelihood,
                                 FilterReport& report) {
   std::vector<double>& log_weights = now_.particles.log_weights;

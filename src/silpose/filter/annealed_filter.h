@@ -39,9 +39,6 @@ class AnnealedFilter : public SteppedParticles {
   FilterReport step(const Propagate& propagate, const Diffuse& diffuse, const LogLikelihood& log_likelihood,
                     const Regenerate& regenerate = {});
 
-  // The layers alone, from the states as they are: a search in one still observation.
-  FilterReport search(const Diffuse& diffuse, const LogLikelihood& log_likelihood);
-
  private:
   void run_layers(uint64_t step, const Diffuse& diffuse, const LogLikelihood& log_likelihood, FilterReport& report);
   StateBatch recombine(uint64_t stream) const;

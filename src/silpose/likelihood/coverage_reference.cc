@@ -97,9 +97,21 @@ struct CellDerivative {
   Eigen::VectorXd row;  // [D]
 };
 
-void add_view(const BodyModel& body, const PinholeCamera& camera, const CoverageEvidence::Raster& raster, double weight,
-              std::span<const double> pose, int rows_per_cell, NormalEquations& equations) {
-  const int width = raster.width, height = raster.height;
+// Model minus observed coverage of each cell, and its derivative.
+struct Difference {
+  Image<double> value;                   // [h, w]
+  std::vector<CellDerivative> jacobian;  // of cells that hold an end of an interval
+
+  // The derivative of cell (x, y), which becomes 0 where it was not there.
+  Eigen::VectorXd& derivative_of(int x, int y, Eigen::Index num_dofs) {
+    auto of_cell = std::ranges::find_if(jacobian, [&](const auto& other) { return other.x == x && other.y == y; });
+    if (of_cell == jacobian.end()) of_cell = jacobian.insert(of_cell, {x, y, Eigen::VectorXd::Zero(num_dofs)});
+    return of_cell->row;
+  }
+};
+
+Difference compare(const BodyModel& body, const PinholeCamera& camera, const CoverageEvidence::Raster& raster,
+                   std::span<const double> pose, int rows_per_cell) {
   const double cell = raster.cell, step = cell / rows_per_cell;
   const auto vertices = skin_vertices(body, pose);
   std::vector<Eigen::Vector2f> pixels(vertices.size());
@@ -107,60 +119,73 @@ void add_view(const BodyModel& body, const PinholeCamera& camera, const Coverage
   const auto rows =
       cover_rows(pixels, body.rest.faces, step / 2, step, static_cast<int>(std::floor(camera.height / step)));
 
-  Image<double> difference(width, height);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) difference.at(x, y) = -static_cast<double>(raster.observed[raster.at(x, y)]);
+  Difference difference{Image<double>(raster.width, raster.height), {}};
+  for (int y = 0; y < raster.height; ++y) {
+    for (int x = 0; x < raster.width; ++x) {
+      difference.value.at(x, y) = -static_cast<double>(raster.observed[raster.at(x, y)]);
+    }
   }
   const PointMotion motion(body.skeleton, pose);
-  std::vector<CellDerivative> jacobian;  // cells that hold an end
   for (size_t r = 0; r < rows.size(); ++r) {
     const int y = static_cast<int>(r) / rows_per_cell;
     for (const Interval& interval : rows[r]) {
       const double begin = std::max(interval.left.x, 0.0), end = std::min<double>(interval.right.x, camera.width);
       if (!(begin < end)) continue;
-      for (int x = 0; x < width; ++x) {
-        difference.at(x, y) +=
+      for (int x = 0; x < raster.width; ++x) {
+        difference.value.at(x, y) +=
             std::max(0.0, std::min(end, (x + 1) * cell) - std::max(begin, x * cell)) / cell / rows_per_cell;
       }
       const auto add_end = [&](const Crossing& at, double by) {
-        const int x = std::min(static_cast<int>(at.x / cell), width - 1);
-        auto of_cell = std::ranges::find_if(jacobian, [&](const auto& other) { return other.x == x && other.y == y; });
-        if (of_cell == jacobian.end()) {
-          of_cell = jacobian.insert(of_cell, {x, y, Eigen::VectorXd::Zero(body.skeleton.num_dofs())});
-        }
-        of_cell->row += by / cell / rows_per_cell * motion_of(at, body, camera, motion);
+        const int x = std::min(static_cast<int>(at.x / cell), raster.width - 1);
+        difference.derivative_of(x, y, body.skeleton.num_dofs()) +=
+            by / cell / rows_per_cell * motion_of(at, body, camera, motion);
       };
       if (interval.left.x > 0) add_end(interval.left, -1);
       if (interval.right.x < camera.width) add_end(interval.right, 1);
     }
   }
-  if (!raster.confidence.empty()) {
-    for (int y = 0; y < height; ++y) {
-      for (int x = 0; x < width; ++x) difference.at(x, y) *= static_cast<double>(raster.confidence[raster.at(x, y)]);
-    }
-    for (CellDerivative& derivative : jacobian) {
-      derivative.row *= static_cast<double>(raster.confidence[raster.at(derivative.x, derivative.y)]);
-    }
-  }
+  return difference;
+}
 
-  const auto blurred = [&](int cell_x, int cell_y) {
-    double sum = 0;
-    for (int y = std::max(0, cell_y - 4); y <= std::min(height - 1, cell_y + 4); ++y) {
-      for (int x = std::max(0, cell_x - 4); x <= std::min(width - 1, cell_x + 4); ++x) {
-        sum += kernel(x - cell_x) * kernel(y - cell_y) * difference.at(x, y);
-      }
-    }
-    return sum;
-  };
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      if (difference.at(x, y) != 0) equations.energy += weight * difference.at(x, y) * blurred(x, y);
+void weigh_by_confidence(const CoverageEvidence::Raster& raster, Difference& difference) {
+  if (raster.confidence.empty()) return;
+  for (int y = 0; y < raster.height; ++y) {
+    for (int x = 0; x < raster.width; ++x) {
+      difference.value.at(x, y) *= static_cast<double>(raster.confidence[raster.at(x, y)]);
     }
   }
-  for (const CellDerivative& one : jacobian) {
-    equations.gradient += weight * blurred(one.x, one.y) * one.row;
+  for (CellDerivative& derivative : difference.jacobian) {
+    derivative.row *= static_cast<double>(raster.confidence[raster.at(derivative.x, derivative.y)]);
+  }
+}
+
+// The difference of a cell after the blur, on both sides.
+double blurred(const Image<double>& difference, int cell_x, int cell_y) {
+  double sum = 0;
+  for (int y = std::max(0, cell_y - 4); y <= std::min(difference.height() - 1, cell_y + 4); ++y) {
+    for (int x = std::max(0, cell_x - 4); x <= std::min(difference.width() - 1, cell_x + 4); ++x) {
+      sum += kernel(x - cell_x) * kernel(y - cell_y) * difference.at(x, y);
+    }
+  }
+  return sum;
+}
+
+void add_view(const BodyModel& body, const PinholeCamera& camera, const CoverageEvidence::Raster& raster, double weight,
+              std::span<const double> pose, int rows_per_cell, NormalEquations& equations) {
+  Difference difference = compare(body, camera, raster, pose, rows_per_cell);
+  weigh_by_confidence(raster, difference);
+  const Image<double>& value = difference.value;
+  for (int y = 0; y < value.height(); ++y) {
+    for (int x = 0; x < value.width(); ++x) {
+      if (value.at(x, y) != 0) equations.energy += weight * value.at(x, y) * blurred(value, x, y);
+    }
+  }
+  for (const CellDerivative& one : difference.jacobian) {
+    equations.gradient += weight * blurred(value, one.x, one.y) * one.row;
     Eigen::VectorXd near = Eigen::VectorXd::Zero(one.row.size());
-    for (const CellDerivative& other : jacobian) near += kernel(one.x - other.x) * kernel(one.y - other.y) * other.row;
+    for (const CellDerivative& other : difference.jacobian) {
+      near += kernel(one.x - other.x) * kernel(one.y - other.y) * other.row;
+    }
     equations.hessian += weight * one.row * near.transpose();
   }
 }

@@ -113,6 +113,48 @@ Eigen::Vector3f clothing_of(std::string_view joint) {
   return kNoClothing;
 }
 
+// The colour of each vertex of a sampled mesh in its light, cut ones included.
+std::vector<Eigen::Vector3f> vertex_shades(const SampledMesh& mesh, std::span<const Eigen::Vector3f> vertices_in_world,
+                                           std::span<const Face> faces, std::span<const Eigen::Vector3f> colours,
+                                           const Lighting& lighting) {
+  const Eigen::Vector3f to_light = lighting.to_light.normalized().cast<float>();
+  const auto ambient = static_cast<float>(lighting.ambient);
+  const std::vector<Eigen::Vector3f> normals = vertex_normals(vertices_in_world, faces);
+  std::vector<Eigen::Vector3f> shades(normals.size());
+  for (size_t i = 0; i < shades.size(); ++i) {
+    const float towards = std::max(0.0f, normals[i].dot(to_light));
+    shades[i] = 255 * (ambient + (1 - ambient) * towards) * colours[i];
+  }
+  for (const auto& [face, weights, depth] : mesh.projected.cut_vertices) {
+    Eigen::Vector3f shade = Eigen::Vector3f::Zero();
+    for (int k = 0; k < 3; ++k) shade += static_cast<float>(weights[k]) * shades[faces[face][static_cast<size_t>(k)]];
+    shades.push_back(shade);
+  }
+  return shades;
+}
+
+// Blends rows [y_begin, y_end) of samples into the picture: each pixel by the share of its samples that are covered,
+// which are those of a nearness above 0.
+void blend_samples(const Image<float>& nearness, const Image<float>& shade, int y_begin, int y_end,
+                   ByteImage& picture) {
+  for (int y = y_begin; y < y_end; ++y) {
+    const auto row = picture.row(y);
+    for (int x = 0; x < picture.width(); ++x) {
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      int covered = 0;
+      for (int k = 0; k < kSamples * kSamples; ++k) {
+        const int sample_x = kSamples * x + k % kSamples, sample_y = kSamples * y + k / kSamples;
+        if (nearness.at(sample_x, sample_y) == 0) continue;
+        sum += Eigen::Map<const Eigen::Vector3f>(&shade.at(sample_x, sample_y));
+        ++covered;
+      }
+      if (covered == 0) continue;
+      const auto share = static_cast<float>(covered);
+      blend(row.subspan(3 * static_cast<size_t>(x), 3), sum / share, share / (kSamples * kSamples));
+    }
+  }
+}
+
 }  // namespace
 
 Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
@@ -149,20 +191,7 @@ void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
   const SampledMesh mesh(camera, vertices_in_world, faces, sampled_picture(camera));
   const auto bounds = pixel_bounds(mesh.projected.pixels);
   if (!bounds) return;
-  const Eigen::Vector3f to_light = lighting.to_light.normalized().cast<float>();
-  const auto ambient = static_cast<float>(lighting.ambient);
-  const std::vector<Eigen::Vector3f> normals = vertex_normals(vertices_in_world, faces);
-  std::vector<Eigen::Vector3f> shades(normals.size());
-  for (size_t i = 0; i < shades.size(); ++i) {
-    const float towards = std::max(0.0f, normals[i].dot(to_light));
-    shades[i] = 255 * (ambient + (1 - ambient) * towards) * colours[i];
-  }
-  for (const auto& [face, weights, depth] : mesh.projected.cut_vertices) {
-    Eigen::Vector3f shade = Eigen::Vector3f::Zero();
-    for (int k = 0; k < 3; ++k) shade += static_cast<float>(weights[k]) * shades[faces[face][static_cast<size_t>(k)]];
-    shades.push_back(shade);
-  }
-
+  const std::vector<Eigen::Vector3f> shades = vertex_shades(mesh, vertices_in_world, faces, colours, lighting);
   Image<float> nearness(mesh.width, mesh.height);  // inverse depth; 0 where there is nothing
   Image<float> shade(mesh.width, mesh.height, 3);
   for (const Face& face : mesh.faces) {
@@ -178,22 +207,7 @@ void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
 
   const int y_begin = std::max(0, static_cast<int>(std::min(bounds->y0, 1e6)) - 1);
   const int y_end = static_cast<int>(std::clamp(bounds->y1 + 2, 0.0, static_cast<double>(picture.height())));
-  for (int y = y_begin; y < y_end; ++y) {
-    const auto row = picture.row(y);
-    for (int x = 0; x < picture.width(); ++x) {
-      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-      int covered = 0;
-      for (int k = 0; k < kSamples * kSamples; ++k) {
-        const int sample_x = kSamples * x + k % kSamples, sample_y = kSamples * y + k / kSamples;
-        if (nearness.at(sample_x, sample_y) == 0) continue;
-        sum += Eigen::Map<const Eigen::Vector3f>(&shade.at(sample_x, sample_y));
-        ++covered;
-      }
-      if (covered == 0) continue;
-      const auto share = static_cast<float>(covered);
-      blend(row.subspan(3 * static_cast<size_t>(x), 3), sum / share, share / (kSamples * kSamples));
-    }
-  }
+  blend_samples(nearness, shade, y_begin, y_end, picture);
 }
 
 std::vector<Eigen::Vector3f> clothing_colours(const BodyModel& body) {

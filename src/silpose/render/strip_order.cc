@@ -120,6 +120,67 @@ struct InnerEdge {
   [[nodiscard]] uint32_t distance() const { return other - first; }
 };
 
+// The side of a triangle, in its strip order, that joins two vertices; and 1 where it winds as the strip order does
+// not.
+std::pair<uint32_t, uint32_t> strip_side(std::span<const uint32_t> triangle, uint32_t a, uint32_t b) {
+  for (uint32_t s = 0; s < 3; ++s) {
+    const uint32_t from = triangle[StripOrder::kSide[s][0]], to = triangle[StripOrder::kSide[s][1]];
+    if (from == a && to == b) return {s, 0u};
+  }
+  for (uint32_t s = 0; s < 3; ++s) {
+    const uint32_t from = triangle[StripOrder::kSide[s][0]], to = triangle[StripOrder::kSide[s][1]];
+    if (from == b && to == a) return {s, 1u};
+  }
+  return {0u, 0u};
+}
+
+// The edges between two faces, in the order of runs. Edges of one face go to the order's borders.
+std::vector<InnerEdge> find_edges(std::span<const Face> faces, Neighbours neighbour, const StripBuilder& builder,
+                                  StripOrder& order) {
+  const auto triangle = [&](uint32_t position) { return std::span(order.vertex).subspan(position, 3); };
+  std::vector<InnerEdge> inner;
+  for (uint32_t f = 0; f < faces.size(); ++f) {
+    const auto p = static_cast<uint32_t>(builder.position(f));
+    for (uint32_t side = 0; side < 3; ++side) {
+      const uint32_t a = faces[f][side], b = faces[f][(side + 1) % 3];
+      const auto [s, turned] = strip_side(triangle(p), a, b);
+      if (neighbour[f][side] == kNone) {
+        order.borders.push_back({p, s});
+        continue;
+      }
+      const auto q = static_cast<uint32_t>(builder.position(static_cast<uint32_t>(neighbour[f][side])));
+      if (p >= q) continue;  // the other face's turn
+      inner.push_back({p, q, s, turned ^ strip_side(triangle(q), b, a).second});
+    }
+  }
+  std::ranges::sort(inner, {}, [](const InnerEdge& e) { return std::tuple(e.distance(), e.side, e.first); });
+  return inner;
+}
+
+// Puts the edges of equal distance and side into runs, and those that are left into pairs.
+void gather_runs(std::span<const InnerEdge> inner, StripOrder& order) {
+  constexpr size_t kFewest = 2;  // a run costs as much as this many pairs
+  for (size_t begin = 0, end = 0; begin < inner.size(); begin = end) {
+    const InnerEdge& head = inner[begin];
+    StripOrder::Run run{.first = head.first & ~7u, .side = head.side};
+    run.other = run.first + head.distance();
+    for (end = begin; end < inner.size() && inner[end].distance() == head.distance() && inner[end].side == head.side &&
+                      inner[end].first < run.first + StripOrder::kRunLength;
+         ++end) {
+      const uint64_t bit = uint64_t{1} << (inner[end].first - run.first);
+      run.mask |= bit;
+      if (inner[end].expected != 0) run.expected |= bit;
+    }
+    if (end - begin >= kFewest) {
+      order.runs.push_back(run);
+      continue;
+    }
+    for (const InnerEdge& edge : inner.subspan(begin, end - begin)) {
+      order.pairs.push_back({edge.first << 2 | edge.side, edge.other << 1 | edge.expected});
+    }
+  }
+}
+
 }  // namespace
 
 StripOrder::StripOrder(std::span<const Face> faces, Neighbours neighbour) {
@@ -135,57 +196,9 @@ StripOrder::StripOrder(std::span<const Face> faces, Neighbours neighbour) {
   });
   num_positions = (vertex.size() + 63) / 64 * 64;
   vertex.resize(num_positions + kPadding, vertex.empty() ? 0 : vertex.back());
-
-  const auto vertex_at = [&](uint32_t position, uint32_t corner) { return vertex[position + corner]; };
-  // The side of a face, in strip order, that joins two vertices; and whether it winds as its strip order does not.
-  const auto strip_side = [&](uint32_t position, uint32_t a, uint32_t b) {
-    for (uint32_t s = 0; s < 3; ++s) {
-      const uint32_t from = vertex_at(position, kSide[s][0]), to = vertex_at(position, kSide[s][1]);
-      if (from == a && to == b) return std::pair(s, 0u);
-    }
-    for (uint32_t s = 0; s < 3; ++s) {
-      const uint32_t from = vertex_at(position, kSide[s][0]), to = vertex_at(position, kSide[s][1]);
-      if (from == b && to == a) return std::pair(s, 1u);
-    }
-    return std::pair(0u, 0u);
-  };
-  std::vector<InnerEdge> inner;
-  for (uint32_t f = 0; f < faces.size(); ++f) {
-    const auto p = static_cast<uint32_t>(builder.position(f));
-    for (uint32_t side = 0; side < 3; ++side) {
-      const uint32_t a = faces[f][side], b = faces[f][(side + 1) % 3];
-      const auto [s, turned] = strip_side(p, a, b);
-      if (neighbour[f][side] == kNone) {
-        borders.push_back({p, s});
-        continue;
-      }
-      const auto q = static_cast<uint32_t>(builder.position(static_cast<uint32_t>(neighbour[f][side])));
-      if (p >= q) continue;  // the other face's turn
-      inner.push_back({p, q, s, turned ^ strip_side(q, b, a).second});
-    }
-  }
+  const std::vector<InnerEdge> inner = find_edges(faces, neighbour, builder, *this);
   num_inner_edges = inner.size();
-  std::ranges::sort(inner, {}, [](const InnerEdge& e) { return std::tuple(e.distance(), e.side, e.first); });
-  constexpr size_t kFewest = 2;  // a run costs as much as this many pairs
-  for (size_t begin = 0, end = 0; begin < inner.size(); begin = end) {
-    const InnerEdge& head = inner[begin];
-    Run run{.first = head.first & ~7u, .side = head.side};
-    run.other = run.first + head.distance();
-    for (end = begin; end < inner.size() && inner[end].distance() == head.distance() && inner[end].side == head.side &&
-                      inner[end].first < run.first + kRunLength;
-         ++end) {
-      const uint64_t bit = uint64_t{1} << (inner[end].first - run.first);
-      run.mask |= bit;
-      if (inner[end].expected != 0) run.expected |= bit;
-    }
-    if (end - begin >= kFewest) {
-      runs.push_back(run);
-    } else {
-      for (size_t i = begin; i < end; ++i) {
-        pairs.push_back({inner[i].first << 2 | inner[i].side, inner[i].other << 1 | inner[i].expected});
-      }
-    }
-  }
+  gather_runs(inner, *this);
 }
 
 }  // namespace silpose

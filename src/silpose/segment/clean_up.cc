@@ -93,6 +93,94 @@ std::vector<bool> parts_near(const cv::Mat& mat, const cv::Mat& labels, const st
   return is_kept;
 }
 
+// The foreground, less what the garbage mask removes.
+Mask without_garbage(const Mask& foreground, const std::optional<Mask>& garbage_mask) {
+  Mask cut = foreground;
+  if (!garbage_mask) return cut;
+  check(garbage_mask->width() == cut.width() && garbage_mask->height() == cut.height(),
+        "choose_blob: garbage mask {}x{}, picture {}x{}", garbage_mask->width(), garbage_mask->height(), cut.width(),
+        cut.height());
+  for (int y = 0; y < cut.height(); ++y) {
+    const auto to = cut.row(y);
+    const auto keep = garbage_mask->row(y);
+    for (size_t i = 0; i < to.size(); ++i) to[i] &= keep[i];
+  }
+  return cut;
+}
+
+// The blobs of a mask: label 0 is the background. Areas are in pixels of the mask itself.
+struct Blobs {
+  cv::Rect part;                                     // of the picture: all that is worked on
+  cv::Mat mat, labels;                               // of that part: the mask, and a label per pixel
+  std::vector<int64_t> area, inside, expected_area;  // by label: whole, in the region, where the subject is expected
+};
+
+// Pixels of a gap of up to twice `reach` belong to one blob.
+Blobs label_blobs(const Mask& mask, const cv::Rect& part, int reach, const std::optional<Box>& region,
+                  const Mask& expected) {
+  Blobs blobs{
+      .part = part, .mat = mat_from_mask(mask)(part), .labels = {}, .area = {}, .inside = {}, .expected_area = {}};
+  // Labelled on a copy that is grown by half of the gap.
+  const cv::Mat joined = reach > 0 ? within(blobs.mat, reach) : blobs.mat;
+  const auto count = static_cast<size_t>(cv::connectedComponents(joined, blobs.labels, 8, CV_32S));
+  const cv::Mat near = where_expected(expected, part);
+  blobs.area.assign(count, 0), blobs.inside.assign(count, 0), blobs.expected_area.assign(count, 0);
+  for (int y = 0; y < part.height; ++y) {
+    const int* row = blobs.labels.ptr<int>(y);
+    const uint8_t* is_set = blobs.mat.ptr(y);
+    for (int x = 0; x < part.width; ++x) {
+      if (!is_set[x]) continue;
+      const auto label = static_cast<size_t>(row[x]);
+      ++blobs.area[label];
+      const bool in_region = !region || (part.x + x >= region->x && part.x + x < region->x + region->width &&
+                                         part.y + y >= region->y && part.y + y < region->y + region->height);
+      if (in_region) ++blobs.inside[label];
+      if (near.at<uint8_t>(y, x) != 0) ++blobs.expected_area[label];
+    }
+  }
+  return blobs;
+}
+
+struct ChosenBlobs {
+  std::vector<bool> is_kept;  // by label; empty: no blob counts
+  int64_t area = 0;           // of all that are kept
+};
+
+// The blobs for the most part where the subject is expected; the largest one and its parts where these cover too little
+// of `expected_area`, the area that is expected to be seen.
+ChosenBlobs choose_among(const Blobs& blobs, double min_area, int64_t expected_area) {
+  const size_t count = blobs.area.size();
+  size_t best = 0;
+  ChosenBlobs chosen{std::vector<bool>(count, false), 0};
+  for (size_t label = 1; label < count; ++label) {
+    const int64_t area = blobs.area[label];
+    if (static_cast<double>(area) < min_area || 2 * blobs.inside[label] < area) continue;
+    if (best == 0 || area > blobs.area[best]) best = label;
+    if (2 * blobs.expected_area[label] < area || blobs.expected_area[label] == 0) continue;
+    chosen.is_kept[label] = true;
+    chosen.area += area;
+  }
+  if (best == 0) return {};
+  const bool is_enough = static_cast<double>(chosen.area) >= kLeastCovered * static_cast<double>(expected_area);
+  if (is_enough && chosen.area != 0) return chosen;
+  chosen = {parts_near(blobs.mat, blobs.labels, blobs.area, best), 0};
+  for (size_t label = 1; label < count; ++label) chosen.area += chosen.is_kept[label] ? blobs.area[label] : 0;
+  return chosen;
+}
+
+// The pixels of the blobs that are kept, as a mask of their part of the picture.
+Mask mask_of(const Blobs& blobs, const std::vector<bool>& is_kept) {
+  Mask mask(blobs.part.width, blobs.part.height);
+  for (int y = 0; y < mask.height(); ++y) {
+    const int* row = blobs.labels.ptr<int>(y);
+    const uint8_t* is_set = blobs.mat.ptr(y);
+    for (int x = 0; x < mask.width(); ++x) {
+      if (is_set[x] && is_kept[static_cast<size_t>(row[x])]) mask.set(x, y);
+    }
+  }
+  return mask;
+}
+
 }  // namespace
 
 void CleanUpOptions::check() const {
@@ -155,17 +243,7 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Ma
   check(expected.width() == 0 || (expected.width() == foreground.width() && expected.height() == foreground.height()),
         "choose_blob: a silhouette of {}x{} is expected, picture {}x{}", expected.width(), expected.height(),
         foreground.width(), foreground.height());
-  Mask cut = foreground;
-  if (options.garbage_mask) {
-    check(options.garbage_mask->width() == cut.width() && options.garbage_mask->height() == cut.height(),
-          "choose_blob: garbage mask {}x{}, picture {}x{}", options.garbage_mask->width(),
-          options.garbage_mask->height(), cut.width(), cut.height());
-    for (int y = 0; y < cut.height(); ++y) {
-      const auto to = cut.row(y);
-      const auto keep = options.garbage_mask->row(y);
-      for (size_t i = 0; i < to.size(); ++i) to[i] &= keep[i];
-    }
-  }
+  const Mask cut = without_garbage(foreground, options.garbage_mask);
   Mask blob(cut.width(), cut.height());
   const Box all = cut.bounding_box();
   if (all.empty()) return blob;
@@ -175,64 +253,19 @@ Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Ma
   const int room = 2 * reach + std::max(options.grow_px, 0) + 2;
   const int x0 = std::max(all.x - room, 0), x1 = std::min(all.x + all.width + room, cut.width());
   const int y0 = std::max(all.y - room, 0), y1 = std::min(all.y + all.height + room, cut.height());
+  const Blobs blobs = label_blobs(cut, {x0, y0, x1 - x0, y1 - y0}, reach, options.region, expected);
 
-  // Labelled on a copy that is grown by half of the gap; counted in pixels of the mask itself.
-  const cv::Mat mat = mat_from_mask(cut)(cv::Rect(x0, y0, x1 - x0, y1 - y0));
-  cv::Mat joined;
-  if (reach > 0) {
-    joined = within(mat, reach);
-  } else {
-    joined = mat;
-  }
-  cv::Mat labels;
-  const auto count = static_cast<size_t>(cv::connectedComponents(joined, labels, 8, CV_32S));
-  const cv::Mat near = where_expected(expected, cv::Rect(x0, y0, x1 - x0, y1 - y0));
-  std::vector<int64_t> area(count, 0), inside(count, 0), expected_area(count, 0);
-  for (int y = 0; y < mat.rows; ++y) {
-    const int* row = labels.ptr<int>(y);
-    const uint8_t* is_set = mat.ptr(y);
-    for (int x = 0; x < mat.cols; ++x) {
-      if (!is_set[x]) continue;
-      const auto label = static_cast<size_t>(row[x]);
-      ++area[label];
-      const bool in_region =
-          !options.region || (x0 + x >= options.region->x && x0 + x < options.region->x + options.region->width &&
-                              y0 + y >= options.region->y && y0 + y < options.region->y + options.region->height);
-      if (in_region) ++inside[label];
-      if (near.at<uint8_t>(y, x) != 0) ++expected_area[label];
-    }
-  }
   const double min_area = options.min_blob_px >= 0 ? options.min_blob_px : kMinBlob * cut.width() * cut.height();
-  size_t best = 0;
-  int64_t covered = 0;
-  std::vector<bool> is_kept(count, false);
-  for (size_t label = 1; label < count; ++label) {
-    if (static_cast<double>(area[label]) < min_area || 2 * inside[label] < area[label]) continue;
-    if (best == 0 || area[label] > area[best]) best = label;
-    if (2 * expected_area[label] < area[label] || expected_area[label] == 0) continue;
-    is_kept[label] = true;
-    covered += area[label];
-  }
-  if (best == 0) return blob;
   const bool is_cut = options.garbage_mask && expected.width() > 0;
-  const int64_t to_be_seen = is_cut ? and_count(expected, *options.garbage_mask) : expected.count();
-  if (static_cast<double>(covered) < kLeastCovered * static_cast<double>(to_be_seen) || covered == 0) {
-    is_kept = parts_near(mat, labels, area, best);
-    covered = 0;
-    for (size_t label = 1; label < count; ++label) covered += is_kept[label] ? area[label] : 0;
-  }
-  Mask part(mat.cols, mat.rows);
-  for (int y = 0; y < mat.rows; ++y) {
-    const int* row = labels.ptr<int>(y);
-    const uint8_t* is_set = mat.ptr(y);
-    for (int x = 0; x < mat.cols; ++x) {
-      if (is_set[x] && is_kept[static_cast<size_t>(row[x])]) part.set(x, y);
-    }
-  }
-  const auto max_hole = static_cast<int64_t>(options.max_hole * static_cast<double>(covered));
-  part = grow(fill_holes(close_gaps(part, reach), max_hole), options.grow_px);
-  for (int y = 0; y < mat.rows; ++y) {
-    for (int x = 0; x < mat.cols; ++x) {
+  const ChosenBlobs chosen =
+      choose_among(blobs, min_area, is_cut ? and_count(expected, *options.garbage_mask) : expected.count());
+  if (chosen.is_kept.empty()) return blob;
+
+  const auto max_hole = static_cast<int64_t>(options.max_hole * static_cast<double>(chosen.area));
+  const Mask closed = close_gaps(mask_of(blobs, chosen.is_kept), reach);
+  const Mask part = grow(fill_holes(closed, max_hole), options.grow_px);
+  for (int y = 0; y < part.height(); ++y) {
+    for (int x = 0; x < part.width(); ++x) {
       if (part.get(x, y)) blob.set(x0 + x, y0 + y);
     }
   }

@@ -4,73 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <filesystem>
 
-#include "silpose/base/folder_for_test.h"
 #include "silpose/image/memory_source.h"
-#include "silpose/segment/scene_for_test.h"
+#include "silpose/segment/make_segmenter_for_test.h"
 
 namespace silpose {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-Result<std::unique_ptr<Segmenter>> make_of(const std::string& input, const SegmenterOptions& options = {},
-                                           double default_fps = 30, ProgressSink* progress = nullptr) {
-  Result<Video> video = open_video(input, {.default_fps = default_fps});
-  if (!video) return video.failure();
-  return make_segmenter(*video, options, progress);
-}
-
-// A clip of pictures at 10 frames per second: frames 0-9 empty, then the subject walks through, 5 pixels per frame.
-class MakeSegmenterTest : public FolderTest {
- protected:
-  static constexpr int kEmpty = 10, kFrames = 50;
-
-  MakeSegmenterTest() {
-    fs::create_directories(folder_ / "clip");
-    for (int i = 0; i < kFrames; ++i) {
-      write_image(folder_ / "clip" / fmt::format("{:03}.png", i), picture(i)).value();
-    }
-  }
-
-  [[nodiscard]] static int place(int index) { return index < kEmpty ? -100 : -20 + 5 * (index - kEmpty); }
-  [[nodiscard]] ByteImage picture(int index) const {
-    return scene_.picture(place(index), static_cast<uint64_t>(index));
-  }
-  [[nodiscard]] Mask truth(int index) const { return scene_.subject(place(index)); }
-  [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
-
-  void write_masks(const std::string& name, int count, int first = 0, int first_number = 0) const {
-    fs::create_directories(folder_ / name);
-    for (int i = 0; i < count; ++i) {
-      write_mask(folder_ / name / fmt::format("{:03}.png", first_number + i), truth(first + i)).value();
-    }
-  }
-
-  // From frame `first` on.
-  void expect_finds_subject(Segmenter& segmenter, int first) const {
-    for (int i = first; i < kFrames; ++i) {
-      const Observation result = segmenter.segment(picture(i), i).value();
-      if (truth(i).count() == 0) {
-        EXPECT_TRUE(result.trust.nothing_found) << i;
-      } else if (truth(i).count() == 24 * 60) {
-        EXPECT_GT(intersection_over_union(result.mask, truth(i)), 0.93) << i;
-      }
-    }
-  }
-
-  [[nodiscard]] std::string failure(const SegmenterOptions& options) const {
-    const auto made = make_of(at("clip"), options);
-    return made ? "" : made.error().message;
-  }
-
-  TestScene scene_;
-};
 
 TEST_F(MakeSegmenterTest, BackgroundOfTheWholeClip) {
   const auto segmenter = make_of(at("clip")).value();
@@ -111,7 +54,7 @@ TEST_F(MakeSegmenterTest, BackgroundOfTheLeadIn) {
 
 TEST_F(MakeSegmenterTest, BackgroundFromAPlateOrAClipOfTheEmptyScene) {
   write_image(at("plate.png"), scene_.picture(-100, 77)).value();
-  fs::create_directories(at("empty"));
+  std::filesystem::create_directories(at("empty"));
   for (int i = 0; i < 8; ++i) write_image(at(fmt::format("empty/{}.png", i)), scene_.picture(-100, 80u + i)).value();
   for (const char* background : {"plate.png", "empty"}) {
     const auto segmenter = make_of(at("clip"), {.background = BackgroundPlate{at(background)}}).value();
@@ -163,14 +106,14 @@ TEST_F(MakeSegmenterTest, MasksOfOtherFramesAreRefused) {
   write_masks("after", 20, 0, 50);
   EXPECT_THAT(failure({.masks = at("after")}), HasSubstr("after: 20 masks for 50 frames of"));
   write_masks("gap", kFrames);
-  fs::remove(at("gap/031.png"));
+  std::filesystem::remove(at("gap/031.png"));
   const auto segmenter = make_of(at("clip"), {.masks = at("gap")}).value();
   EXPECT_TRUE(segmenter->segment(picture(30), 30).ok());
   EXPECT_THAT(segmenter->segment(picture(31), 31).error().message, HasSubstr("frame 31 has none"));
 }
 
 TEST_F(MakeSegmenterTest, LeadInCountsFromTheFirstPictureWhateverItsNumber) {
-  fs::create_directories(at("later"));
+  std::filesystem::create_directories(at("later"));
   for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("later/{}.png", 200 + i)), picture(i)).value();
   const auto segmenter = make_of(at("later"), {.background = BackgroundLeadIn{1}}, 10).value();
   EXPECT_EQ(segmenter->first_index(), 210);
@@ -254,7 +197,7 @@ TEST_F(MakeSegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
     }
     return image;
   };
-  fs::create_directories(at("green"));
+  std::filesystem::create_directories(at("green"));
   for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("green/{:02}.png", i)), keyed(i)).value();
   SegmenterOptions options{.kind = "chroma"};
   auto segmenter = make_of(at("green"), options).value();
@@ -281,107 +224,13 @@ TEST_F(MakeSegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   EXPECT_THAT(failure({.kind = "chroma"}), HasSubstr("clip: no screen"));
 }
 
-TEST_F(MakeSegmenterTest, DepthJoinsTheColours) {
-  // A subject of the background's own colours, its shadow, and a sensor that now and then sees nothing.
-  const TestScene scene{.shadow = 0.4};
-  const auto camouflaged = [&](int i) {
-    ByteImage image = scene.picture(place(i), static_cast<uint64_t>(i));
-    const ByteImage empty = scene.picture(-100, static_cast<uint64_t>(i) + 1000);
-    for (int v = 0; v < image.height(); ++v) {
-      for (int u = 0; u < image.width(); ++u) {
-        for (int c = 0; c < 3 && truth(i).get(u, v); ++c) image.at(u, v, c) = empty.at(u, v, c);
-      }
-    }
-    return image;
-  };
-  const auto depth = [&](int i, int num_blind_rows) {
-    DepthImage image(scene.width, scene.height, 1, 4000);
-    Rng rng(static_cast<uint64_t>(i));
-    for (int v = 0; v < image.height(); ++v) {
-      for (int u = 0; u < image.width(); ++u) {
-        const bool is_subject = truth(i).get(u, v);
-        const double metres = is_subject ? 3 : 4;
-        image.at(u, v) = static_cast<uint16_t>(std::lround(1000 * metres + 1.4 * metres * metres * rng.normal()));
-        if (rng.uniform() < 0.02 || (is_subject && v < 30 + num_blind_rows)) image.at(u, v) = 0;
-      }
-    }
-    return image;
-  };
-  for (const char* name : {"same", "depth", "blind"}) fs::create_directories(at(name));
-  for (int i = 0; i < kFrames; ++i) {
-    write_image(at(fmt::format("same/{:03}.png", i)), camouflaged(i)).value();
-    write_depth_image(at(fmt::format("depth/{:03}.png", i)), depth(i, 0)).value();
-    write_depth_image(at(fmt::format("blind/{:03}.png", i)), depth(i, 25)).value();
-  }
-  const auto worst = [&](const SegmenterOptions& options, const std::string& clip) {
-    const auto segmenter = make_of(at(clip), options).value();
-    double least = 1;
-    for (int i = 15; i < 45; i += 5) {
-      const ByteImage image = clip == "same" ? camouflaged(i) : picture(i);
-      least = std::min(least, intersection_over_union(segmenter->segment(image, i)->mask, truth(i)));
-    }
-    return least;
-  };
-  EXPECT_LT(worst({.kind = "background"}, "same"), 0.3) << "colour cannot distinguish them";
-  EXPECT_GT(worst({.kind = "background", .depth = at("depth")}, "same"), 0.95);
-  EXPECT_LT(worst({.kind = "depth", .depth = at("blind")}, "clip"), 0.7) << "depth alone cannot distinguish them";
-  EXPECT_GT(worst({.kind = "background", .depth = at("blind")}, "clip"), 0.95);
-  EXPECT_EQ(make_of(at("same"), {.kind = "background", .depth = at("depth")}).value()->name(),
-            "background auto with depth");
-  EXPECT_THAT(make_of(at("clip"), {.kind = "background", .background = BackgroundOnline{}, .depth = at("depth")})
-                  .error()
-                  .message,
-              HasSubstr("not an online one"));
-}
-
-TEST_F(MakeSegmenterTest, DepthSegmentsByItself) {
-  const auto depth = [&](int i) {
-    DepthImage image(scene_.width, scene_.height, 1, 4000);
-    const Mask mask = truth(i);
-    for (int y = 0; y < image.height(); ++y) {
-      for (int x = 0; x < image.width(); ++x) {
-        if (mask.get(x, y)) image.at(x, y) = 3000;
-      }
-    }
-    return image;
-  };
-  fs::create_directories(at("depth"));
-  for (int i = 0; i < kFrames; ++i) write_depth_image(at(fmt::format("depth/{:03}.png", i + 1)), depth(i)).value();
-  SegmenterOptions options{.kind = "depth", .depth = at("depth")};
-  for (const std::optional<DepthRange>& range : {std::optional<DepthRange>(), std::optional(DepthRange{2.5, 3.5})}) {
-    options.depth_range = range;
-    const auto segmenter = make_of(at("clip"), options).value();
-    EXPECT_EQ(segmenter->name(), range ? "depth 2.5 to 3.5 m" : "depth auto");
-    EXPECT_THAT(segmenter->warnings(), IsEmpty());
-    EXPECT_EQ(segmenter->first_index(), 0);  // as many as frames: in order, whatever they are numbered from
-    for (const int i : {0, 25, 49}) EXPECT_EQ(segmenter->segment(picture(i), i).value().mask, truth(i)) << i;
-    EXPECT_THAT(segmenter->segment(picture(49), 50).error().message, HasSubstr("50 depth images, frame 50 has none"));
-  }
-
-  EXPECT_THAT(failure({.kind = "depth"}), HasSubstr("no depth images are given"));
-  EXPECT_THAT(failure({.kind = "depth", .depth = at("none")}), HasSubstr("none: no such file or directory"));
-  EXPECT_THAT(failure({.kind = "depth", .depth = at("clip")}), HasSubstr("3 channels of 8 bits, depth is one of 16"));
-  for (const int number : {48, 49, 50}) fs::remove(at(fmt::format("depth/{:03}.png", number)));
-  EXPECT_THAT(failure({.kind = "depth", .depth = at("depth")}), HasSubstr("47 depth images for 50 frames of"));
-  for (const char* folder : {"few", "small", "flat"}) fs::create_directories(at(folder));
-  for (int i = 0; i < 2; ++i) {
-    write_image(at(fmt::format("few/{}.png", i)), picture(i)).value();
-    write_depth_image(at(fmt::format("small/{}.png", i)), DepthImage(80, 60, 1, 900)).value();
-    write_depth_image(at(fmt::format("flat/{}.png", i)), DepthImage(160, 120, 1, 900)).value();
-  }
-  EXPECT_THAT(make_of(at("few"), {.kind = "depth", .depth = at("small")}).error().message,
-              HasSubstr("small/0.png: depth of 80x60 for pictures of 160x120"));
-  EXPECT_THAT(make_of(at("few"), {.kind = "depth", .depth = at("flat")}).value()->warnings(),
-              ElementsAre(HasSubstr("almost nothing is ever nearer than the background")));
-}
-
 TEST_F(MakeSegmenterTest, WarnsOfASubjectWhoStays) {
-  fs::create_directories(at("still"));
+  std::filesystem::create_directories(at("still"));
   for (int i = 0; i < 12; ++i) {
     write_image(at(fmt::format("still/{:02}.png", i)), scene_.picture(60, static_cast<uint64_t>(i))).value();
   }
   EXPECT_THAT(make_of(at("still")).value()->warnings(), ElementsAre(HasSubstr("almost nothing moves")));
-  fs::create_directories(at("half"));
+  std::filesystem::create_directories(at("half"));
   for (int i = 0; i < 20; ++i) {
     write_image(at(fmt::format("half/{:02}.png", i)), scene_.picture(i < 8 ? 60 : 6 * i, 5u + i)).value();
   }

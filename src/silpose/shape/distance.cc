@@ -4,17 +4,6 @@
 
 namespace silpose {
 
-int64_t pixel_count_distance(const Mask& a, const Mask& b) { return xor_count(a, b); }
-
-double pixel_count_fraction(const Mask& a, const Mask& b) {
-  return pixel_count_fraction(a.count(), b.count(), and_count(a, b));
-}
-
-double pixel_count_fraction(int64_t model, int64_t observed, int64_t both) {
-  const int64_t areas = model + observed;
-  return areas == 0 ? 0.0 : static_cast<double>(areas - 2 * both) / static_cast<double>(areas);
-}
-
 double depth_ssd(const Image<float>& a, const Image<float>& b, double missing_m) {
   check(a.width() == b.width() && a.height() == b.height() && a.channels() == 1 && b.channels() == 1,
         "depth_ssd: images of {}x{}x{} and {}x{}x{}", a.width(), a.height(), a.channels(), b.width(), b.height(),

@@ -306,7 +306,6 @@ Result<DegradedMasks> DegradedMasks::create(const SyntheticSequence& sequence, i
       const OutlineNoise outline(noise.outline, noise.seed, stream_of(camera_idx, 0));
       const Result<size_t> levels = find_levels(sequence, camera_idx, outline, noise.iou);
       if (!levels) return levels.failure();
-      masks.edge_amplitude_ = OutlineNoise::kLargestAmplitude * static_cast<double>(*levels) / kLevels;
       masks.fault_ = edge_fault(sequence, camera_idx, outline, *levels);
       break;
     }

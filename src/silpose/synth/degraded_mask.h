@@ -45,16 +45,13 @@ class DegradedMasks {
   // Mean intersection over union with the true masks, measured over all frames with a body; 1 when there is none.
   [[nodiscard]] double mean_iou() const { return mean_iou_; }
 
-  // Of kEdge: standard deviation of the displacement, of the body's height; 0 of the others.
-  [[nodiscard]] double edge_amplitude() const { return edge_amplitude_; }
-
  private:
   DegradedMasks(const SyntheticSequence& sequence, int camera_idx) : sequence_(&sequence), camera_idx_(camera_idx) {}
   void measure();
 
   const SyntheticSequence* sequence_;
   int camera_idx_;
-  double mean_iou_ = 1, edge_amplitude_ = 0;
+  double mean_iou_ = 1;
   std::function<Mask(int)> fault_;  // a frame with a body to its mask
 };
 

@@ -6,7 +6,6 @@
 
 #include "silpose/body/stretchable.h"
 #include "silpose/motion/noise.h"
-#include "silpose/track/pose_estimate.h"
 
 namespace silpose {
 namespace {
@@ -42,11 +41,9 @@ BodyError::BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras, 
   likelihood_ = std::make_unique<CoverageLikelihood>(std::move(stretched), std::move(cameras));
 }
 
-BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::span<const double> pose,
-                                        CoverageLikelihood::Scratch& scratch) const {
-  const BodyModel& body = likelihood_->body();
-  const size_t num_landmarks = static_cast<size_t>(body.skeleton.num_joints()) + body.end_points.size();
-  Variance result{std::vector<double>(pose.size(), 0.0), no_landmark_variances(num_landmarks)};
+PoseVariances BodyError::variance(const CoverageEvidence& evidence, std::span<const double> pose,
+                                  CoverageLikelihood::Scratch& scratch) const {
+  PoseVariances result = no_variances(pose.size(), likelihood_->body());
   add_wrong_lengths(evidence, pose, scratch, result);
   const auto is_usable = [](const CoverageEvidence::View& view) { return view.trust > 0; };
   if (std::ranges::count_if(evidence.views, is_usable) == 1) {
@@ -56,7 +53,7 @@ BodyError::Variance BodyError::variance(const CoverageEvidence& evidence, std::s
 }
 
 // A body that is scaled about the camera's centre has the same silhouette.
-void BodyError::add_wrong_size(const PinholeCamera& camera, std::span<const double> pose, Variance& result) const {
+void BodyError::add_wrong_size(const PinholeCamera& camera, std::span<const double> pose, PoseVariances& result) const {
   if (size_deviation_ <= 0) return;
   const BodyModel& body = likelihood_->body();
   std::vector<double> stretched(pose.begin(), pose.end());
@@ -75,7 +72,7 @@ void BodyError::add_wrong_size(const PinholeCamera& camera, std::span<const doub
 }
 
 void BodyError::add_wrong_lengths(const CoverageEvidence& evidence, std::span<const double> pose,
-                                  CoverageLikelihood::Scratch& scratch, Variance& result) const {
+                                  CoverageLikelihood::Scratch& scratch, PoseVariances& result) const {
   const BodyModel& body = likelihood_->body();
   const auto D = std::ssize(pose), S = lengths_.rows();
   const double wrong = wrongness(evidence);

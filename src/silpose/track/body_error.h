@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "silpose/likelihood/coverage_likelihood.h"
-#include "silpose/track/pose_estimate.h"
+#include "silpose/track/pose_spread.h"
 
 namespace silpose {
 
@@ -29,21 +29,17 @@ class BodyError {
 
   [[nodiscard]] const CoverageLikelihood& likelihood() const { return *likelihood_; }
 
-  struct Variance {
-    std::vector<double> dofs;  // [D] radians^2, metres^2
-    LandmarkVariances landmarks;
-  };
   // What to add to the variance of a pose [D] that was fitted to `evidence`, prepared at Blur::k4.
-  [[nodiscard]] Variance variance(const CoverageEvidence& evidence, std::span<const double> pose,
-                                  CoverageLikelihood::Scratch& scratch) const;
+  [[nodiscard]] PoseVariances variance(const CoverageEvidence& evidence, std::span<const double> pose,
+                                       CoverageLikelihood::Scratch& scratch) const;
 
  private:
   void add_wrong_lengths(const CoverageEvidence& evidence, std::span<const double> pose,
-                         CoverageLikelihood::Scratch& scratch, Variance& result) const;
+                         CoverageLikelihood::Scratch& scratch, PoseVariances& result) const;
   [[nodiscard]] Eigen::MatrixXd correlated_errors(const CoverageEvidence& evidence, std::span<const double> stretched,
                                                   const Eigen::MatrixXd& information, const Eigen::VectorXd& rest,
                                                   CoverageLikelihood::Scratch& scratch) const;
-  void add_wrong_size(const PinholeCamera& camera, std::span<const double> pose, Variance& result) const;
+  void add_wrong_size(const PinholeCamera& camera, std::span<const double> pose, PoseVariances& result) const;
 
   std::unique_ptr<CoverageLikelihood> likelihood_;  // of the stretchable body
   double size_deviation_;

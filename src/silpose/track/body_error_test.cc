@@ -13,8 +13,7 @@ namespace {
 
 class BodyErrorTest : public ::testing::Test {
  protected:
-  BodyError::Variance variance(double noise, const std::vector<PinholeCamera>& cameras,
-                               double size_deviation = 0) const {
+  PoseVariances variance(double noise, const std::vector<PinholeCamera>& cameras, double size_deviation = 0) const {
     const BodyError error(*body_, cameras, size_deviation);
     std::vector<Observation> observations;
     for (const PinholeCamera& camera : cameras) {

@@ -15,12 +15,12 @@
 #include "silpose/body/levels.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/track/clip_passes.h"
 #include "silpose/track/girth_fit.h"
 #include "silpose/track/judged_clip.h"
 #include "silpose/track/keypoint_sides.h"
 #include "silpose/track/plausibility.h"
 #include "silpose/track/pose_fit.h"
-#include "silpose/track/track_clip.h"
 
 namespace silpose {
 namespace {
@@ -249,96 +249,157 @@ std::vector<size_t> informative_instants(const JudgedClip& clip, std::span<const
   return instants;
 }
 
-}  // namespace
-
-std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const ClipInstant> clip,
-                                std::span<const std::vector<double>> poses, const std::function<bool()>& proceed) {
-  const std::vector<PinholeCamera>& cameras = options.cameras;
-  check(poses.size() == clip.size(), "fit_body: {} poses of {} instants", poses.size(), clip.size());
-  for (const std::vector<double>& pose : poses) {
-    check(pose.empty() || pose.size() == options.body->skeleton.dofs().size(),
-          "fit_body: a pose of {} numbers for {} DOF", pose.size(), options.body->skeleton.dofs().size());
+// The instants that lengths and girths are fitted to.
+struct ChosenInstants {
+  std::vector<const ClipInstant*> seen;  // [N]
+  std::vector<VectorXd> poses;           // [N] of [D]
+  // How many of them carry the same information: information of a prior is worth that much more.
+  [[nodiscard]] double redundancy() const {
+    return std::max(1.0, static_cast<double>(seen.size()) / kIndependentInstants);
   }
-  const bool one_camera = cameras.size() == 1, floor = *options.resolved().floor;
-  const EvidenceKind evidence_kind =
-      options.evidence == EvidenceKind::kSilhouette ? EvidenceKind::kSilhouette : EvidenceKind::kBoth;
-  BodyFit fit;
-  BodyModel given = *options.body;
-  std::vector<std::vector<double>> given_poses(poses.begin(), poses.end());
-  const JudgedClip judged(clip, cameras.size());
-  const std::vector<size_t> usable = informative_instants(judged, poses, cameras.size(), evidence_kind);
-  if (one_camera) {
-    fit.size_deviation = options.size_deviation;
-    if (floor && (usable.empty() || options.size_deviation > 0)) {
-      fit.size = rescale_by_floor(given, cameras.front(), given_poses);
-      if (fit.size) fit.size_deviation = std::max(fit.size->deviation, kLeastSizeDeviation);
+};
+
+// Of the instants that are informative, kInstants, evenly spread.
+ChosenInstants choose_instants(const JudgedClip& clip, std::span<const std::vector<double>> poses,
+                               const std::vector<size_t>& informative) {
+  const size_t count = std::min(kInstants, informative.size());
+  ChosenInstants chosen;
+  for (size_t i = 0; i < count; ++i) {
+    const size_t t = informative[(2 * i + 1) * informative.size() / (2 * count)];
+    chosen.seen.push_back(&clip[t]);
+    chosen.poses.emplace_back(Eigen::Map<const VectorXd>(poses[t].data(), std::ssize(poses[t])));
+  }
+  return chosen;
+}
+
+// How a shape is fitted.
+struct ShapeFitOptions {
+  const std::vector<PinholeCamera>& cameras;
+  EvidenceKind evidence;
+  bool floor;
+  MatrixXd information;  // [S, S] of the lengths' prior
+  const std::function<bool()>& proceed;
+};
+
+// Lengths and poses, with the equations there, and girths.
+struct ShapeFit {
+  Point at;
+  GirthFit girths;
+};
+
+// One round over the lengths and poses, for the girths so far.
+void fit_lengths(const std::shared_ptr<const BodyModel>& stretched, const ShapeFitOptions& options,
+                 const ChosenInstants& instants, std::vector<CoverageEvidence>& evidence, Point& at) {
+  const CoverageLikelihood likelihood(stretched, options.cameras);
+  if (evidence.empty()) {
+    for (const ClipInstant* instant : instants.seen) {
+      evidence.push_back(likelihood.prepare(instant->observations, Blur::k8, Blur::k4, options.evidence));
     }
   }
-  if (usable.empty()) {
-    if (!fit.size) return std::nullopt;
-    given.name += ",fitted";
-    fit.body = std::make_shared<const BodyModel>(std::move(given));
-    return fit;
+  const Plausibility plausibility(stretched, options.floor);
+  Problem problem(likelihood, plausibility, evidence, options.information);
+  problem.estimate_noise(at.unknowns);
+  for (const FitStage& stage : kStages) {
+    at.equations = problem.linearise(at.unknowns, stage.blur);
+    descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) -> std::optional<Point> {
+      if (options.proceed && !options.proceed()) return std::nullopt;
+      Point next{problem.stepped(from.unknowns, from.equations, damping), {}};
+      next.equations = problem.linearise(next.unknowns, stage.blur);
+      return next;
+    });
   }
+}
 
-  const BodyModel coarse = level_of_detail(given, kBodyFitLevel);
-  const BodyModel bare = stretchable(coarse);
-  const size_t count = std::min(kInstants, usable.size());
-  const double redundancy = std::max(1.0, static_cast<double>(count) / kIndependentInstants);
-  const MatrixXd information = redundancy * information_of_lengths(coarse, one_camera, fit.size_deviation);
-  const std::vector<int> shape = shape_dofs(bare.skeleton);
-  const Girths girths_of(bare);
-  const auto S = std::ssize(shape);
-  Point at{{VectorXd::Zero(S), {}}, {}};
-  GirthFit girths{VectorXd::Zero(std::ssize(girths_of.names())), {}};
-  std::vector<size_t> chosen;
-  for (size_t i = 0; i < count; ++i) {
-    chosen.push_back(usable[(2 * i + 1) * usable.size() / (2 * count)]);
-    const std::vector<double>& pose = given_poses[chosen.back()];
-    at.unknowns.poses.emplace_back(Eigen::Map<const VectorXd>(pose.data(), std::ssize(pose)));
-  }
+// Lengths and girths in turn. `girths_of` are those of the stretchable body.
+ShapeFit fit_shape(const Girths& girths_of, const ShapeFitOptions& options, const ChosenInstants& instants) {
+  ShapeFit fit{{{VectorXd::Zero(options.information.rows()), instants.poses}, {}},
+               {VectorXd::Zero(std::ssize(girths_of.names())), {}}};
   std::vector<CoverageEvidence> evidence;
   for (int round = 0; round < kRounds; ++round) {
-    const auto stretched = std::make_shared<const BodyModel>(girths_of.applied(view(girths.girths)));
-    const CoverageLikelihood likelihood(stretched, cameras);
-    if (evidence.empty()) {
-      for (const size_t t : chosen) {
-        evidence.push_back(likelihood.prepare(judged[t].observations, Blur::k8, Blur::k4, evidence_kind));
-      }
-    }
-    const Plausibility plausibility(stretched, floor);
-    Problem problem(likelihood, plausibility, evidence, information);
-    problem.estimate_noise(at.unknowns);
-    for (const FitStage& stage : kStages) {
-      at.equations = problem.linearise(at.unknowns, stage.blur);
-      descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) -> std::optional<Point> {
-        if (proceed && !proceed()) return std::nullopt;
-        Point next{problem.stepped(from.unknowns, from.equations, damping), {}};
-        next.equations = problem.linearise(next.unknowns, stage.blur);
-        return next;
-      });
-    }
+    const auto stretched = std::make_shared<const BodyModel>(girths_of.applied(view(fit.girths.girths)));
+    fit_lengths(stretched, options, instants, evidence, fit.at);
     if (round + 1 < kRounds) {
-      girths = fit_girths(girths_of, cameras, evidence, at.unknowns.stretched_poses(), girths.girths, proceed);
+      fit.girths = fit_girths(girths_of, options.cameras, evidence, fit.at.unknowns.stretched_poses(),
+                              fit.girths.girths, options.proceed);
     }
   }
-  fit.lengths.assign(at.unknowns.lengths.begin(), at.unknowns.lengths.end());
-  const MatrixXd covariance = redundancy * Problem::reduce(at.equations, 0).hessian.inverse();
-  for (Eigen::Index s = 0; s < S; ++s) fit.deviations.push_back(std::sqrt(std::max(covariance(s, s), 0.0)));
-  for (const int d : shape) fit.names.push_back(bare.skeleton.dofs()[static_cast<size_t>(d)].name);
+  return fit;
+}
+
+// Takes lengths and girths, with their deviations, into the result. `bare` is the stretchable body.
+void take_figures(const ShapeFit& shape, const BodyModel& bare, const Girths& girths_of, double redundancy,
+                  BodyFit& fit) {
+  const VectorXd& lengths = shape.at.unknowns.lengths;
+  fit.lengths.assign(lengths.begin(), lengths.end());
+  const MatrixXd covariance = redundancy * Problem::reduce(shape.at.equations, 0).hessian.inverse();
+  for (Eigen::Index s = 0; s < lengths.size(); ++s) {
+    fit.deviations.push_back(std::sqrt(std::max(covariance(s, s), 0.0)));
+  }
+  for (const int d : shape_dofs(bare.skeleton)) {
+    fit.names.push_back(bare.skeleton.dofs()[static_cast<size_t>(d)].name);
+  }
   for (size_t g = 0; g < girths_of.names().size(); ++g) {
     const auto idx = static_cast<Eigen::Index>(g);
-    fit.girths.push_back({girths_of.names()[g], girths.girths[idx], girths.deviations[idx]});
+    fit.girths.push_back({girths_of.names()[g], shape.girths.girths[idx], shape.girths.deviations[idx]});
   }
-  BodyModel fitted = with_lengths(Girths(given).applied(view(girths.girths)), fit.lengths);
-  fitted.name += ",fitted";
+}
+
+// The body with the lengths and girths [G] of a fit, which it states among its facts.
+BodyModel with_shape(const BodyModel& given, const BodyFit& fit, const VectorXd& girths) {
+  BodyModel fitted = with_lengths(Girths(given).applied(view(girths)), fit.lengths);
   for (size_t s = 0; s < fit.names.size(); ++s) {
     fitted.facts[fit.names[s]] = fmt::format("{:+.4f} m", fit.lengths[s]);
   }
   for (const BodyFit::Girth& girth : fit.girths) {
     fitted.facts[girth.name + "_girth"] = fmt::format("{:+.1f} %", 100 * girth.share);
   }
-  fit.body = std::make_shared<const BodyModel>(std::move(fitted));
+  return fitted;
+}
+
+void check_poses(const BodyModel& body, size_t num_instants, std::span<const std::vector<double>> poses) {
+  check(poses.size() == num_instants, "fit_body: {} poses of {} instants", poses.size(), num_instants);
+  for (const std::vector<double>& pose : poses) {
+    check(pose.empty() || pose.size() == body.skeleton.dofs().size(), "fit_body: a pose of {} numbers for {} DOF",
+          pose.size(), body.skeleton.dofs().size());
+  }
+}
+
+}  // namespace
+
+std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const ClipInstant> clip,
+                                std::span<const std::vector<double>> poses, const std::function<bool()>& proceed) {
+  check_poses(*options.body, clip.size(), poses);
+  const std::vector<PinholeCamera>& cameras = options.cameras;
+  const bool one_camera = cameras.size() == 1, floor = *options.resolved().floor;
+  const EvidenceKind evidence =
+      options.evidence == EvidenceKind::kSilhouette ? EvidenceKind::kSilhouette : EvidenceKind::kBoth;
+  const JudgedClip judged(clip, cameras.size());
+  const std::vector<size_t> informative = informative_instants(judged, poses, cameras.size(), evidence);
+  BodyFit fit;
+  BodyModel given = *options.body;
+  std::vector<std::vector<double>> given_poses(poses.begin(), poses.end());
+  if (one_camera) {
+    fit.size_deviation = options.size_deviation;
+    if (floor && (informative.empty() || options.size_deviation > 0)) {
+      fit.size = rescale_by_floor(given, cameras.front(), given_poses);
+      if (fit.size) fit.size_deviation = std::max(fit.size->deviation, kLeastSizeDeviation);
+    }
+  }
+  if (!informative.empty()) {
+    const BodyModel coarse = level_of_detail(given, kBodyFitLevel);
+    const BodyModel bare = stretchable(coarse);
+    const Girths girths_of(bare);
+    const ChosenInstants instants = choose_instants(judged, given_poses, informative);
+    const double redundancy = instants.redundancy();
+    const MatrixXd information = redundancy * information_of_lengths(coarse, one_camera, fit.size_deviation);
+    const ShapeFit shape = fit_shape(girths_of, {cameras, evidence, floor, information, proceed}, instants);
+    take_figures(shape, bare, girths_of, redundancy, fit);
+    given = with_shape(given, fit, shape.girths.girths);
+  } else if (!fit.size) {
+    return std::nullopt;
+  }
+  given.name += ",fitted";
+  fit.body = std::make_shared<const BodyModel>(std::move(given));
   return fit;
 }
 

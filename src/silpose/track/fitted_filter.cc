@@ -7,7 +7,7 @@
 #include "silpose/base/clock.h"
 #include "silpose/base/state_bytes.h"
 #include "silpose/filter/log_weights.h"
-#include "silpose/track/pose_estimate.h"
+#include "silpose/track/pose_spread.h"
 
 namespace silpose {
 namespace {
@@ -130,41 +130,18 @@ std::vector<double> FittedFilter::estimate() const {
 }
 
 PoseSpread FittedFilter::spread() const {
-  const BodyModel& body = fine_->body();
   const auto hypotheses = mixture_.hypotheses();
   const std::vector<double> centre = estimate();
-  const auto centre_landmarks = landmark_positions(body, centre);
   const std::vector<double> weights = particles_.weights();
-  PoseSpread spread;
-  spread.dofs.assign(centre.size(), 0);
-  LandmarkVariances variances = no_landmark_variances(centre_landmarks.size());
+  const PoseScatter scatter(fine_->body(), centre);
+  PoseVariances variances = no_variances(centre.size(), fine_->body());
   for (size_t i = 0; i < hypotheses.size(); ++i) {
-    const auto covariance = hypotheses[i].pose_covariance();
     const auto row = particles_.states.row(static_cast<Eigen::Index>(i)).head(std::ssize(centre));
     const std::vector<double> pose(row.begin(), row.end());
-    for (size_t d = 0; d < pose.size(); ++d) {
-      double off = pose[d] - centre[d];
-      if (body.skeleton.dofs()[d].is_periodic) off = wrap_angle(off);
-      spread.dofs[d] +=
-          weights[i] * (covariance(static_cast<Eigen::Index>(d), static_cast<Eigen::Index>(d)) + off * off);
-    }
-    const auto landmarks = landmark_positions(body, pose);
-    const LandmarkVariances own = landmark_variances(body, pose, covariance);
-    const Eigen::Vector3d root_off = landmarks.front() - centre_landmarks.front();
-    for (size_t l = 0; l < landmarks.size(); ++l) {
-      const Eigen::Vector3d off = landmarks[l] - centre_landmarks[l];
-      variances.in_world[l] += weights[i] * (own.in_world[l] + off.cwiseAbs2());
-      variances.about_root[l] += weights[i] * (own.about_root[l] + (off - root_off).cwiseAbs2());
-    }
+    scatter.add(weights[i], pose, hypotheses[i].pose_covariance(), variances);
   }
-  for (size_t d = 0; d < from_body_.dofs.size(); ++d) spread.dofs[d] += from_body_.dofs[d];
-  variances += from_body_.landmarks;
-  for (double& variance : spread.dofs) variance = std::sqrt(variance);
-  for (const Eigen::Vector3d& variance : variances.in_world) spread.landmarks.emplace_back(variance.cwiseSqrt());
-  for (const Eigen::Vector3d& variance : variances.about_root) {
-    spread.landmarks_about_root.emplace_back(variance.cwiseSqrt());
-  }
-  return spread;
+  variances += from_body_;
+  return spread_of(variances);
 }
 
 }  // namespace silpose

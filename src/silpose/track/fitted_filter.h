@@ -45,9 +45,9 @@ class FittedFilter final : public PoseFilter {
   ParticleSet particles_;
   BodyError body_error_;
   EvidenceKind evidence_;
-  BodyError::Variance from_body_;  // of the last estimate
-  bool added_ = false;             // hypotheses were added since the last step
-  std::vector<double> noise_;      // [C]; empty until the first step
+  PoseVariances from_body_;    // of the last estimate
+  bool added_ = false;         // hypotheses were added since the last step
+  std::vector<double> noise_;  // [C]; empty until the first step
 };
 
 }  // namespace silpose

@@ -8,7 +8,6 @@
 // Threads: one thread per filter; steps use all cores inside.
 #pragma once
 
-#include <Eigen/Core>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,16 +16,10 @@
 #include "silpose/filter/particle_set.h"
 #include "silpose/image/observation.h"
 #include "silpose/track/initialisation.h"
+#include "silpose/track/pose_spread.h"
 #include "silpose/track/step_report.h"
 
 namespace silpose {
-
-// Standard deviations about an estimate.
-struct PoseSpread {
-  std::vector<double> dofs;                           // [D] radians, metres
-  std::vector<Eigen::Vector3d> landmarks;             // [J + E] metres, as body's landmark_positions
-  std::vector<Eigen::Vector3d> landmarks_about_root;  // [J + E] of their places relative to the root joint
-};
 
 class PoseFilter {
  public:

@@ -13,9 +13,6 @@
 
 namespace silpose {
 
-// `options` for a pass over a clip that only has to find the basin: online, and on a mesh no finer than that requires.
-TrackerOptions options_of_pass(const TrackerOptions& options);
-
 // Called after each instant; tracking ends early when it returns false.
 using ClipProgress = std::function<bool(size_t instants_done, size_t instants_total)>;
 

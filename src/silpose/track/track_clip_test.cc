@@ -122,6 +122,16 @@ TEST_F(ClipTest, NothingSeenIsWaiting) {
   }
 }
 
+TEST_F(ClipTest, WithoutTheEvidenceThatIsUsedItIsWaiting) {
+  TrackerOptions options = accurate();
+  options.evidence = EvidenceKind::kKeypoints;
+  options.landmarks = true;
+  for (const StepReport& report : track_clip(options, clip(3, 9, 9))) {
+    EXPECT_EQ(report.state, StepReport::State::kWaiting);
+    EXPECT_EQ(report.observed.size(), 1u);
+  }
+}
+
 TEST_F(ClipTest, StopsWhenAskedAndTellsGrowingProgress) {
   size_t last = 0, calls = 0;
   track_clip(accurate(), clip(6, 0, 0), [&](size_t done, size_t total) {

@@ -1,0 +1,91 @@
+// Functions and files of the project are short; and the rule finds those that are not, in files made here.
+#include "length_rules.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <limits>
+
+namespace silpose {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+namespace fs = std::filesystem;
+
+const std::string kProject = SILPOSE_SOURCE_DIR;
+
+TEST(Project, HasShortFiles) {
+  const LengthLimits of_files{.function = std::numeric_limits<size_t>::max()};
+  EXPECT_THAT(length_violations(kProject, {"src", "apps", "bench"}, of_files), IsEmpty());
+}
+// All but apps and src/silpose/{body,experiment,motion,track}, in which a few functions are still longer.
+TEST(Project, HasShortFunctions) {
+  std::vector<std::string> folders = {"bench", "src/sadb"};
+  for (const char* module : {"base", "calibrate", "evaluate", "exchange", "filter", "geometry", "image", "likelihood",
+                             "recording", "render", "report", "segment", "shape", "synth", "video"}) {
+    folders.push_back(std::string("src/silpose/") + module);
+  }
+  EXPECT_THAT(length_violations(kProject, folders), IsEmpty());
+}
+
+class LengthRules : public testing::Test {
+ protected:
+  void SetUp() override {
+    root_ = fs::path(testing::TempDir()) /
+            (std::string("length_rules_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(root_);
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  void write(const fs::path& file, const std::string& text) {
+    fs::create_directories((root_ / file).parent_path());
+    std::ofstream(root_ / file) << text;
+  }
+  static std::string repeated(const std::string& line, int count) {
+    std::string text;
+    for (int i = 0; i < count; ++i) text += line;
+    return text;
+  }
+
+  fs::path root_;
+};
+
+TEST_F(LengthRules, CountsAFunctionFromItsHeadToItsBrace) {
+  write("src/a.cc", "namespace a {\n\n// Comment.\nint f(int x,\n      int y) {\n" + repeated("  ++x;\n", 7) +
+                        "}\n\nint g() {\n" + repeated("  f(1, 2);\n", 8) + "}\n\n}  // namespace a\n");
+  EXPECT_THAT(length_violations(root_, {"src"}, {.function = 10, .file = 100}), IsEmpty());
+  EXPECT_THAT(length_violations(root_, {"src"}, {.function = 9, .file = 100}),
+              ElementsAre("src/a.cc:4: 10 lines of 'int f(int x,', at most 9",
+                          "src/a.cc:15: 10 lines of 'int g() {', at most 9"));
+}
+
+TEST_F(LengthRules, CountsMembersConstructorsAndTests) {
+  write("bench/a.h", "class A {\n public:\n  A()\n      : a_(1),\n        b_(2) {\n" + repeated("    ++a_;\n", 3) +
+                         "  }\n  struct B {\n    void f() const {\n" + repeated("      g();\n", 4) +
+                         "    }\n  };\n};\n");
+  write("bench/a_test.cc", "TEST(A, B) {\n" + repeated("  f();\n", 4) + "}\n");
+  EXPECT_THAT(length_violations(root_, {"bench"}, {.function = 5, .file = 100}),
+              ElementsAre(HasSubstr("bench/a.h:3: 7 lines of 'A()'"), HasSubstr("bench/a.h:11: 6 lines of 'void f()"),
+                          HasSubstr("bench/a_test.cc:1: 6 lines of 'TEST(A, B) {'")));
+}
+
+// Classes, branches and tables are no functions; a lambda belongs to the function it is in.
+TEST_F(LengthRules, CountsFunctionsOnly) {
+  write("src/a.cc", "struct A {\n" + repeated("  int f(int);\n", 20) + "};\nconst int kTable[] = {\n" +
+                        repeated("    f(1),\n", 20) + "};\nvoid g() {\n  if (f(1)) {\n    f(2);\n  }\n}\n");
+  EXPECT_THAT(length_violations(root_, {"src"}, {.function = 8, .file = 100}), IsEmpty());
+}
+
+TEST_F(LengthRules, CountsLinesOfFiles) {
+  write("src/a.cc", repeated("int a;\n", 5));
+  write("src/b.md", repeated("text\n", 50));
+  EXPECT_THAT(length_violations(root_, {"src"}, {.function = 60, .file = 5}), IsEmpty());
+  EXPECT_THAT(length_violations(root_, {"src"}, {.function = 60, .file = 4}),
+              ElementsAre("src/a.cc: 5 lines, at most 4"));
+}
+
+}  // namespace
+}  // namespace silpose
