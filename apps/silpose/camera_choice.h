@@ -1,5 +1,5 @@
-// Which cameras: those of a calibration file, or one assumed where no file is given (clip_camera_choice.h improves on it).
-// Threads: the main thread only.
+// Which cameras: those of a calibration file, or one assumed where no file is given (clip_camera_choice.h improves on
+// it). Threads: the main thread only.
 #pragma once
 
 #include <CLI/CLI.hpp>

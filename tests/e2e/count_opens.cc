@@ -17,7 +17,8 @@ using Open = int (*)(const char*, int, ...);
 
 void count(const char* path, int flags) {
   const char *counted = std::getenv("COUNT_OPENS_OF"), *log = std::getenv("COUNT_OPENS_LOG");
-  if (counted == nullptr || log == nullptr || (flags & O_ACCMODE) != O_RDONLY || std::strcmp(path, counted) != 0) return;
+  if (counted == nullptr || log == nullptr || (flags & O_ACCMODE) != O_RDONLY || std::strcmp(path, counted) != 0)
+    return;
   if (std::FILE* file = std::fopen(log, "a")) {
     std::fputs("opened\n", file);
     std::fclose(file);
@@ -31,13 +32,13 @@ int open_next(const char* name, const char* path, int flags, mode_t mode) {
 
 }  // namespace
 
-#define INTERPOSE(name)                                              \
-  extern "C" int name(const char* path, int flags, ...) {            \
-    va_list arguments;                                               \
-    va_start(arguments, flags);                                      \
-    const auto mode = static_cast<mode_t>(va_arg(arguments, int));   \
-    va_end(arguments);                                               \
-    return open_next(#name, path, flags, mode);                      \
+#define INTERPOSE(name)                                            \
+  extern "C" int name(const char* path, int flags, ...) {          \
+    va_list arguments;                                             \
+    va_start(arguments, flags);                                    \
+    const auto mode = static_cast<mode_t>(va_arg(arguments, int)); \
+    va_end(arguments);                                             \
+    return open_next(#name, path, flags, mode);                    \
   }
 INTERPOSE(open)
 INTERPOSE(open64)

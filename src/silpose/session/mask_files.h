@@ -56,7 +56,7 @@ class MaskFiles : public SessionSink {
 
   std::filesystem::path folder_;
   std::vector<std::string> cameras_;  // names
-  std::vector<MaskStrip> strips_;  // [C]
+  std::vector<MaskStrip> strips_;     // [C]
   bool keeps_confidence_ = false;
 };
 

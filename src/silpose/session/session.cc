@@ -302,8 +302,8 @@ Result<void> Session::Impl::fit_body_to_clip() {
     if (Result<void> saved = save({}); !saved) return saved;
   }
   const int64_t total = std::ssize(clip_);
-  std::optional<BodyFit> fit = fit_body(options_.tracker, clip_, now_.given_poses,
-                                        [&] { return update("fitting the body", total, total); });
+  std::optional<BodyFit> fit =
+      fit_body(options_.tracker, clip_, now_.given_poses, [&] { return update("fitting the body", total, total); });
   if (stopped_) return {};
   now_.seconds.smooth += whole_clip_.restart();
   if (!fit) {
@@ -362,7 +362,8 @@ Result<SessionResult> Session::Impl::finish() {
     if (Result<void> finished = sink->finish(); !finished) return finished.failure();
   }
   now_.seconds.write += writing.seconds();
-  result_.recording = recording_of(now_.reports, options_.tracker.body->skeleton.name(), names_of(result_.used.cameras));
+  result_.recording =
+      recording_of(now_.reports, options_.tracker.body->skeleton.name(), names_of(result_.used.cameras));
   const std::vector<std::string> open = ambiguities(now_.reports);
   result_.warnings.insert(result_.warnings.end(), open.begin(), open.end());
   result_.doubtful = doubtful_angles(now_.reports, *result_.body);

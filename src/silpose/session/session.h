@@ -45,13 +45,13 @@ struct SessionOptions {
 };
 
 struct SessionResult {
-  TrackRecording recording;                // without steps where a clip that is tracked as a whole was stopped early
-  std::shared_ptr<const BodyModel> body;   // as given, or fitted
-  std::optional<BodyFit> body_fit;         // where the body was fitted
-  TrackerOptions used;                     // resolved
-  int64_t num_frames = 0;                  // segmented
+  TrackRecording recording;               // without steps where a clip that is tracked as a whole was stopped early
+  std::shared_ptr<const BodyModel> body;  // as given, or fitted
+  std::optional<BodyFit> body_fit;        // where the body was fitted
+  TrackerOptions used;                    // resolved
+  int64_t num_frames = 0;                 // segmented
   StageSeconds seconds;
-  double loop_s = 0;  // from the first frame to the last, all stages
+  double loop_s = 0;     // from the first frame to the last, all stages
   bool stopped = false;  // by the progress sink
   std::vector<std::string> warnings;
   std::vector<std::string> doubtful;  // angles, and when
@@ -68,7 +68,8 @@ class Session {
 
   // Restores what an earlier session saved, which read_checkpoint() gave, and reads over the frames that are done.
   // Returns where it resumes, for the user: "after frame 41", "in the pass over the whole clip", ...
-  // Errors: those of the source; another clip; masks that are gone. REQUIRES: before next(); SessionOptions::checkpoint.
+  // Errors: those of the source; another clip; masks that are gone. REQUIRES: before next();
+  // SessionOptions::checkpoint.
   Result<std::string> resume(Checkpoint earlier);
 
   // The report of the next frame, in order and from the first frame of the clip on, whether resumed or not. nullopt at

@@ -162,9 +162,9 @@ TEST_F(SessionTest, ResumesWhereItWasStopped) {
     int64_t stop;
     const char* where;
   };
-  for (const Case& test : {Case{false, "tracking", 5, "after frame 4"}, Case{true, "segmenting", 7, "after frame 6"},
-                           Case{true, "tracking", 9, "in the pass over the whole clip"},
-                           Case{true, "writing", 3, "with the overlay"}}) {
+  for (const Case& test :
+       {Case{false, "tracking", 5, "after frame 4"}, Case{true, "segmenting", 7, "after frame 6"},
+        Case{true, "tracking", 9, "in the pass over the whole clip"}, Case{true, "writing", 3, "with the overlay"}}) {
     const auto chosen = [&] { return with_checkpoint(test.is_smoothed ? smoothed() : options()); };
     const auto source = observe({{}}), first = observe({{}}), second = observe({{}});
     const SessionResult whole = Session(*source, test.is_smoothed ? smoothed() : options()).finish().value();
@@ -272,7 +272,9 @@ TEST_F(SessionTest, TheGivenPoseIsTheFirst) {
 TEST_F(SessionTest, AFailingInitialPoseIsAnError) {
   const auto source = observe({{}});
   SessionOptions failing = options();
-  failing.initial_pose = [](int64_t) -> Result<std::optional<std::vector<double>>> { return error("poses.csv: empty"); };
+  failing.initial_pose = [](int64_t) -> Result<std::optional<std::vector<double>>> {
+    return error("poses.csv: empty");
+  };
   EXPECT_EQ(Session(*source, std::move(failing)).next().error().message, "poses.csv: empty");
 }
 
