@@ -8,6 +8,7 @@
 #include "apps/silpose/body_facts.h"
 #include "apps/silpose/observation_source.h"
 #include "apps/silpose/subject_fit.h"
+#include "silpose/track/tracker_presets.h"
 
 namespace silpose::app {
 namespace {
@@ -49,14 +50,12 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
   if (Console::interrupted()) return error("interrupted: nothing is written");
   if (clip->empty()) return error("{}: no frame between --start and --end", source->video().name());
 
-  TrackerOptions tracker;
+  TrackerOptions tracker = accurate_preset();
   tracker.body = *body;
   tracker.cameras = cameras->cameras;
-  tracker.preset = "accurate";
   tracker.size_deviation = size_deviation_of(options.model);
   tracker.seed = common.seed;
   tracker.landmarks = source->finds_keypoints();
-  if (source->finds_keypoints()) tracker.evidence = EvidenceKind::kBoth;
   const std::optional<BodyFit> fit = fit_subject(tracker, *clip, poses_as_given(tracker, *clip, console), console);
   if (Console::interrupted()) return error("interrupted: nothing is written");
   if (!fit) return error("{}: no body fitted: {}", source->video().name(), why_not_fitted(tracker));

@@ -32,7 +32,7 @@ std::optional<BodyFit> fit_subject(const TrackerOptions& tracker, std::span<cons
 
 std::string why_not_fitted(const TrackerOptions& tracker) {
   if (tracker.cameras.size() > 1) return "there is no frame in which two cameras see the subject";
-  return *tracker.resolved().floor
+  return tracker.has_floor()
              ? "no frame has 3D keypoints, and the subject does not stand on the floor y = 0 of the camera file"
              : "no frame has 3D keypoints, and no floor is known";
 }

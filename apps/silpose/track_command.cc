@@ -45,7 +45,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
   TrackerOptions tracker = std::move(*asked);
   TrackResume resume{
       .folder = directory->path(),
-      .made_with = made_with(option_lines(app, chosen_options(options, tracker.resolved())), cameras->cameras, **body),
+      .made_with = made_with(option_lines(app, chosen_options(options, tracker)), cameras->cameras, **body),
       .earlier = {}};
   if (options.resume) {
     auto earlier = read_checkpoint(resume.folder, resume.made_with);
@@ -56,10 +56,11 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
   if (options.init == "landmarks" && !source->finds_keypoints()) {
     return error("--init landmarks: {} finds none; --segmenter learned does", source->background());
   }
-  if (options.evidence == "landmarks" && !source->finds_keypoints()) {
+  if (tracker.evidence == EvidenceKind::kKeypoints && !source->finds_keypoints()) {
     return error("--evidence landmarks: {} finds none; --segmenter learned does", source->background());
   }
-  if (tracker.regenerate_from == "network" && !source->finds_keypoints()) {
+  const SamplingOptions* const sampling = tracker.sampling();
+  if (sampling != nullptr && sampling->regenerate_from == RegenerateFrom::kNetwork && !source->finds_keypoints()) {
     return error("--regenerate-from network: {} finds no keypoints; --segmenter learned does", source->background());
   }
   tracker.landmarks = (options.init == "auto" || options.init == "landmarks") && source->finds_keypoints();

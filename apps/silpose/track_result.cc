@@ -8,6 +8,7 @@
 #include "apps/silpose/run_facts.h"
 #include "apps/silpose/subject_fit.h"
 #include "silpose/report/report_page.h"
+#include "silpose/track/tracker_presets.h"
 
 namespace silpose::app {
 namespace {
@@ -42,7 +43,7 @@ FactLines run_lines(const FinishedTrack& finished) {
                      {"Body", finished.writer.body().name},
                      {"Camera file", camera_file}};
   for (const PinholeCamera& camera : finished.writer.cameras()) lines.emplace_back("Camera", line_of(camera));
-  lines.emplace_back("Preset", finished.options.tracker.preset);
+  lines.emplace_back("Preset", finished.options.preset);
   for (const auto& [name, value] : chosen_options(finished.options, finished.tracked.used))
     lines.emplace_back(name, value);
   lines.emplace_back("Seed", std::to_string(finished.common.seed));
@@ -93,7 +94,8 @@ Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path
   run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
   run["background"] = finished.source.background();
   run["start_by_landmarks"] = tracked.used.landmarks;
-  run["evidence"] = finished.source.finds_keypoints() ? finished.options.evidence : "silhouette";
+  run["evidence"] =
+      finished.source.finds_keypoints() ? text_of(named_options(tracked.used).at("evidence")) : "silhouette";
   run["cameras"] = nlohmann::ordered_json::array();
   for (const PinholeCamera& camera : finished.writer.cameras()) run["cameras"].push_back(camera.name);
   run["doubtful"] = tracked.doubtful;

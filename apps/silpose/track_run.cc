@@ -36,8 +36,8 @@ class TrackRun {
         recorder_(board_, writer.body().skeleton.name(), names_of(writer.cameras()), {.masks = false}) {}
 
   Result<Tracked> run() {
-    tracked_.used = tracker_options_.resolved();
-    const bool as_a_whole = *tracked_.used.smooth || *options_.fit_body;
+    tracked_.used = tracker_options_;
+    const bool as_a_whole = tracked_.used.smooths() || *options_.fit_body;
     if (as_a_whole) writer_.keep_confidence();
     if (resume_.earlier) {
       if (Result<void> ready = restore(std::move(*resume_.earlier)); !ready) return ready.failure();

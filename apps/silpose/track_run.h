@@ -28,8 +28,8 @@ struct TrackResume {
 };
 
 struct Tracked {
-  TrackRecording recording;         // without steps where smoothing was interrupted
-  TrackerOptions used;              // resolved
+  TrackRecording recording;  // without steps where smoothing was interrupted
+  TrackerOptions used;
   int64_t num_frames = 0;           // segmented
   std::optional<BodyFit> body_fit;  // where the body was fitted
   StageSeconds seconds;

@@ -11,4 +11,5 @@
 #include "silpose/render/silhouette.h"
 #include "silpose/segment/make_segmenter.h"
 #include "silpose/track/tracker.h"
+#include "silpose/track/tracker_presets.h"
 #include "silpose/video/video.h"

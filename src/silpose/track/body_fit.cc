@@ -258,7 +258,7 @@ std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const C
     check(pose.empty() || pose.size() == options.body->skeleton.dofs().size(),
           "fit_body: a pose of {} numbers for {} DOF", pose.size(), options.body->skeleton.dofs().size());
   }
-  const bool one_camera = cameras.size() == 1, floor = *options.resolved().floor;
+  const bool one_camera = cameras.size() == 1, floor = options.has_floor();
   const EvidenceKind evidence_kind =
       options.evidence == EvidenceKind::kSilhouette ? EvidenceKind::kSilhouette : EvidenceKind::kBoth;
   BodyFit fit;
@@ -343,7 +343,7 @@ std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const C
 
 TrackerOptions options_before_fit(const TrackerOptions& options) {
   TrackerOptions pass = options_of_pass(options);
-  if (options.cameras.size() == 1) pass.floor = false;
+  if (options.cameras.size() == 1 && pass.fitted() != nullptr) pass.fitted()->floor = false;
   return pass;
 }
 

@@ -53,7 +53,7 @@ class ClipTracker {
  public:
   ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress,
               const ClipResume& resume)
-      : options_(options.resolved()),
+      : options_(options),
         clip_(clip, options.cameras.size()),
         progress_(progress),
         resume_(resume),
@@ -61,9 +61,9 @@ class ClipTracker {
         seen_(clip.size()) {
     options_.check();
     for (size_t t = 0; t < clip.size(); ++t) seen_[t] = any_is_usable(clip[t].observations);
-    const auto body = level_of_detail(options_.body, *options_.lod_vertices);
+    const auto body = level_of_detail(options_.body, options_.lod_vertices);
     likelihood_ = std::make_shared<const CoverageLikelihood>(body, options_.cameras);
-    plausibility_ = std::make_shared<const Plausibility>(body, *options_.floor);
+    plausibility_ = std::make_shared<const Plausibility>(body, options_.has_floor());
   }
 
   std::vector<StepReport> run() {
@@ -132,9 +132,9 @@ class ClipTracker {
       if (starts.size() == kNumStarts) break;
     }
     // Passes start from scratch, so a coarse mesh will do to choose.
-    const auto body = level_of_detail(options_.body, *options_of_pass(options_).lod_vertices);
+    const auto body = level_of_detail(options_.body, options_of_pass(options_).lod_vertices);
     const CoverageLikelihood likelihood(body, options_.cameras);
-    const Plausibility plausibility(body, *options_.floor);
+    const Plausibility plausibility(body, options_.has_floor());
     double best = -std::numeric_limits<double>::infinity();
     size_t chosen = starts.front();
     const InitialisationOptions search{.seed = options_.seed, .evidence = start_evidence(options_)};
@@ -378,16 +378,15 @@ class ClipTracker {
 }  // namespace
 
 TrackerOptions options_of_pass(const TrackerOptions& options) {
-  TrackerOptions pass = options.resolved();
-  pass.smooth = false;
-  if (*pass.lod_vertices == 0 || *pass.lod_vertices > kTrackingLevel) pass.lod_vertices = kTrackingLevel;
+  TrackerOptions pass = options;
+  if (pass.fitted() != nullptr) pass.fitted()->smooth = false;
+  if (pass.lod_vertices == 0 || pass.lod_vertices > kTrackingLevel) pass.lod_vertices = kTrackingLevel;
   return pass;
 }
 
 std::vector<StepReport> track_clip(const TrackerOptions& options, std::span<const ClipInstant> clip,
                                    const ClipProgress& progress, const ClipResume& resume) {
-  const TrackerOptions resolved = options.resolved();
-  if (*resolved.smooth && !clip.empty()) return ClipTracker(options, clip, progress, resume).run();
+  if (options.smooths() && !clip.empty()) return ClipTracker(options, clip, progress, resume).run();
   Tracker tracker(options);
   std::vector<StepReport> reports;
   if (!resume.state.empty()) {
