@@ -10,6 +10,7 @@
 #include "apps/silpose/camera_choice.h"
 #include "apps/silpose/input_options.h"
 #include "silpose/track/track_clip.h"
+#include "silpose/track/tracker_presets.h"
 
 namespace silpose::app {
 namespace {
@@ -71,14 +72,12 @@ Result<Outcome> run_fit(const FitOptions& options, const CommonOptions& common, 
   if (Console::interrupted()) return error("interrupted: nothing is written");
   if (clip->empty()) return error("{}: no frame between --start and --end", name);
 
-  TrackerOptions tracker;
+  TrackerOptions tracker = accurate_preset();
   tracker.body = *body;
   tracker.cameras = cameras->cameras;
-  tracker.preset = "accurate";
   tracker.size_deviation = size_deviation_of(options.model);
   tracker.seed = common.seed;
   tracker.landmarks = (*source)->finds_keypoints();
-  if (tracker.landmarks) tracker.evidence = EvidenceKind::kBoth;
   const Result<BodyFit> fit = fit_to_clip(tracker, *clip, name, console);
   if (!fit) return fit.failure();
 

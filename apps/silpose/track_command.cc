@@ -25,14 +25,17 @@ namespace silpose::app {
 namespace {
 
 // Errors: an option that needs keypoints, where the segmenter finds none.
-Result<void> check_keypoints(const TrackOptions& options, const ObservationSource& source) {
+Result<void> check_keypoints(const TrackOptions& options, const TrackerOptions& tracker,
+                             const ObservationSource& source) {
   if (source.finds_keypoints()) return {};
   const auto refused = [&](const char* option, const char* what) {
     return error("{}: {} finds {}; --segmenter learned does", option, source.segmentation(), what);
   };
   if (options.init == "landmarks") return refused("--init landmarks", "none");
-  if (options.evidence == "landmarks") return refused("--evidence landmarks", "none");
-  if (options.tracker.regenerate_from == "network") return refused("--regenerate-from network", "no keypoints");
+  if (tracker.evidence == EvidenceKind::kKeypoints) return refused("--evidence landmarks", "none");
+  const SamplingOptions* const sampling = tracker.sampling();
+  if (sampling != nullptr && sampling->regenerate_from == RegenerateFrom::kNetwork)
+    return refused("--regenerate-from network", "no keypoints");
   return {};
 }
 
@@ -77,7 +80,7 @@ Result<Track> prepare(TrackOptions options, const CommonOptions& common, Console
   Result<TrackerOptions> tracker = tracker_options(options, track.body, track.cameras.cameras, common.seed);
   if (!tracker) return tracker.failure();
   track.tracker = std::move(*tracker);
-  if (const Result<void> fits = check_keypoints(options, *track.source); !fits) return fits.failure();
+  if (const Result<void> fits = check_keypoints(options, track.tracker, *track.source); !fits) return fits.failure();
   track.tracker.landmarks = (options.init == "auto" || options.init == "landmarks") && track.source->finds_keypoints();
   track.options = std::move(options);
   return track;
@@ -166,7 +169,7 @@ Result<Outcome> track_clip_of(const CLI::App& app, TrackOptions options, const C
   if (!track) return track.failure();
   const std::vector<PinholeCamera>& cameras = track->cameras.cameras;
   const auto masks = std::make_shared<MaskFiles>(directory->path(), cameras);
-  const auto chosen = chosen_options(track->options, track->tracker.resolved());
+  const auto chosen = chosen_options(track->options, track->tracker);
   const CheckpointPlace place{directory->path(), made_with(option_lines(app, chosen), cameras, *track->body), masks};
   const Result<SessionResult> result = run(*track, masks, place, console);
   if (!result) return result.failure();

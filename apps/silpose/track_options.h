@@ -12,6 +12,7 @@
 
 #include "apps/silpose/camera_choice.h"
 #include "apps/silpose/input_options.h"
+#include "silpose/base/option_table.h"
 #include "silpose/base/result.h"
 #include "silpose/track/tracker_options.h"
 
@@ -20,12 +21,11 @@ namespace silpose::app {
 struct TrackOptions {
   InputOptions input;
   CameraOptions camera;
-  std::string model = "human", out, config, init = "auto", root = "tracked", evidence = "both";
-  std::optional<std::string> estimate;
-  std::optional<double> resample_below, level_iou;
+  std::string model = "human", out, config, init = "auto", preset = "default";
+  GivenOptions tracker;  // those of the tracker, by name, on top of the preset
+  std::optional<double> level_iou;
   std::optional<bool> fit_body;
   bool each = false, resume = false, draw_floor = false;
-  TrackerOptions tracker;
 };
 
 void add_track_options(CLI::App& app, TrackOptions& options);
@@ -50,7 +50,7 @@ Result<TrackerOptions> tracker_options(const TrackOptions& options, std::shared_
 Result<std::optional<std::vector<double>>> read_initial_pose(const TrackOptions& options, const Skeleton& skeleton,
                                                              int64_t frame);
 
-// The tracker's resolved options, by option name, for config.toml.
+// Every option of the tracker, and what else was chosen for this clip, by option name, for config.toml.
 std::map<std::string, std::string> chosen_options(const TrackOptions& options, const TrackerOptions& used);
 
 }  // namespace silpose::app

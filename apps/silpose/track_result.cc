@@ -9,6 +9,7 @@
 #include "apps/silpose/run_facts.h"
 #include "silpose/report/report_page.h"
 #include "silpose/session/result_files.h"
+#include "silpose/track/tracker_presets.h"
 
 namespace silpose::app {
 namespace {
@@ -38,7 +39,7 @@ FactLines run_lines(const FinishedTrack& finished) {
                      {"Body", finished.tracked.body->name},
                      {"Camera file", camera_file}};
   for (const PinholeCamera& camera : finished.camera.cameras) lines.emplace_back("Camera", line_of(camera));
-  lines.emplace_back("Preset", finished.options.tracker.preset);
+  lines.emplace_back("Preset", finished.options.preset);
   for (const auto& [name, value] : chosen_options(finished.options, finished.tracked.used))
     lines.emplace_back(name, value);
   lines.emplace_back("Seed", std::to_string(finished.common.seed));
@@ -89,7 +90,7 @@ Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path
   run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
   run["background"] = finished.source.segmentation();
   run["start_by_landmarks"] = tracked.used.landmarks;
-  run["evidence"] = finished.source.finds_keypoints() ? finished.options.evidence : "silhouette";
+  run["evidence"] = finished.source.finds_keypoints() ? text_of(named_options(tracked.used).at("evidence")) : "silhouette";
   run["cameras"] = nlohmann::ordered_json::array();
   for (const PinholeCamera& camera : finished.camera.cameras) run["cameras"].push_back(camera.name);
   run["doubtful"] = tracked.doubtful;

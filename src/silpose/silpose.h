@@ -12,4 +12,5 @@
 #include "silpose/segment/make_segmenter.h"
 #include "silpose/session/session.h"
 #include "silpose/track/tracker.h"
+#include "silpose/track/tracker_presets.h"
 #include "silpose/video/video.h"

@@ -6,6 +6,8 @@
 
 #include <fstream>
 
+#include "silpose/track/tracker_presets.h"
+
 namespace silpose {
 namespace {
 
@@ -83,7 +85,7 @@ values = [{ label = "one", clip = ["a.mp4"], camera_names = ["a"], truth = "a", 
           { label = "two", clip = ["a.mp4", "b.mp4"], truth = "b", frames = 7 }]
 [[axis]]
 name = "method"
-values = [{ label = "both" }, { label = "network", evidence = "network" }]
+values = [{ label = "both" }, { label = "network", kind = "keypoints" }]
 [[without]]
 clip = ["two"]
 method = ["network"]
@@ -101,9 +103,58 @@ TEST(ReadGrid, RecordedClipsWithoutTheCellsLeftOut) {
   EXPECT_THAT(grid.cells[0].settings.camera_names, ElementsAre("a"));
   EXPECT_THAT(grid.cells[0].settings.background, ElementsAre("a.jpg"));
   EXPECT_EQ(grid.cells[0].settings.segmenter, "learned");
-  EXPECT_EQ(grid.cells[0].settings.evidence, "both");
+  EXPECT_EQ(grid.cells[0].settings.run_kind(), RunKind::kTrackClip);
+  EXPECT_EQ(grid.cells[1].settings.run_kind(), RunKind::kKeypoints);
   EXPECT_EQ(grid.cells[2].settings.frames, 7);
   EXPECT_EQ(read(kClips, true).value().cells.size(), 1u);
+}
+
+// Every option of the tracker can be named, "motion" with its prefix: without it is the subject's.
+TEST(ReadGrid, CellsNameOptionsOfTheTracker) {
+  const Grid grid = read(std::string(R"(
+[run]
+preset = "thesis"
+motion = "sway"
+tracker_motion = "first-order-augmented"
+resample_below = 0.5
+tracker_regenerate_from = "random"
+floor = false
+[[axis]]
+name = "sigma"
+key = "sigma_deg"
+values = [2, 4.5]
+[[axis]]
+name = "metric"
+key = "metric"
+values = ["pixel-count", "coverage"]
+)") + kTable)
+                        .value();
+  ASSERT_EQ(grid.cells.size(), 4u);
+  EXPECT_EQ(grid.cells[3].settings.motion, "sway");
+  EXPECT_EQ(grid.cells[3].settings.run_kind(), RunKind::kTrack);
+  const GivenOptions expected = {{"motion", std::string("first-order-augmented")},
+                                 {"resample-below", 0.5},
+                                 {"regenerate-from", std::string("random")},
+                                 {"floor", false},
+                                 {"sigma-deg", 4.5},
+                                 {"metric", std::string("coverage")}};
+  EXPECT_EQ(grid.cells[3].settings.tracker, expected);
+  EXPECT_EQ(grid.cells[0].settings.tracker.at("sigma-deg"), OptionValue(2.0)) << "a whole number is a number";
+}
+
+TEST(RunSettings, EveryOptionOfTheTrackerHasAKey) {
+  const auto expect_key = [](const OptionInfo& info) {
+    for (const std::string& key :
+         {with_underscores(info.name), fmt::format("tracker_{}", with_underscores(info.name))}) {
+      const OptionInfo* const found = tracker_option_of(key);
+      ASSERT_NE(found, nullptr) << key;
+      EXPECT_EQ(found->name, info.name);
+    }
+  };
+  for (const auto& option : tracker_option_table().options) expect_key(option.info);
+  for (const auto& option : fitted_option_table().options) expect_key(option.info);
+  for (const auto& option : sampling_option_table().options) expect_key(option.info);
+  EXPECT_EQ(tracker_option_of("speed"), nullptr);
 }
 
 struct BadGrid {
@@ -117,13 +168,13 @@ TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
                        names_one ? "clip = [\"a.mp4\"], " : "", more);
   };
   const std::vector<BadGrid> all = {
-      {"run = { frames = -3 }\n", "run.frames: a whole number"},
-      {"run = { frames = 2.5 }\n", "run.frames: a whole number"},
-      {"run = { fps = \"fast\" }\n", "run.fps: a number"},
+      {"run = { frames = -3 }\n", "run.frames: -3 is not a whole number from 0 to 1000000"},
+      {"run = { frames = 2.5 }\n", "run.frames: 2.5 is not a whole number"},
+      {"run = { fps = \"fast\" }\n", "run.fps: 'fast' is not a number from 0.1 to 10000"},
       {"run = { speed = 3 }\n", "run.speed: no such setting"},
-      {"run = { preset = \"best\" }\n", "run.preset: 'best' is not one of"},
-      {"run = { views = \"front\" }\n", "run.views: a list of texts"},
-      {"run = { size = [640] }\n", "run.size: two numbers"},
+      {"run = { preset = \"best\" }\n", "run.preset: 'best' is not one of default, accurate, thesis"},
+      {"run = { views = \"front\" }\n", "run.views: 'front' is not a list of texts"},
+      {"run = { size = [640] }\n", "run.size: a list of texts or two numbers"},
       {"run = 3\n", "run: a table"},
       {"sedes = 3\n", "sedes: no such key"},
       {"seeds = 0\n", "seeds: a whole number"},
@@ -147,7 +198,7 @@ TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
       {"seeds = = 3\n", "line 1"},
       {"run = { truth = \"a\" }\n", "run.truth: needs clip"},
       {"run = { clip = [] }\n", "run.clip: needs clip, a list of videos"},
-      {"run = { clip = \"a.mp4\" }\n", "run.clip: a list of texts"},
+      {"run = { clip = \"a.mp4\" }\n", "run.clip: 'a.mp4' is not a list of texts"},
       {"run = { clip = [\"a.mp4\"] }\n", "run.clip: needs camera"},
       {"run = { clip = [\"a.mp4\"], camera = \"c.toml\" }\n", "run.clip: needs truth"},
       {clip("motion = \"sway\""), "run.motion: not together with clip"},
@@ -156,7 +207,18 @@ TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
       {clip("background = [\"a\", \"b\"]"), "run.clip: 2 backgrounds for 1 videos"},
       {clip("evidence = \"guess\""), "run.evidence: 'guess' is not one of"},
       {clip("segmenter = \"masks\", evidence = \"landmarks\""), "evidence = \"landmarks\" needs segmenter"},
-      {clip("clip = [\"a\", \"b\"], evidence = \"network\"", false), "evidence = \"network\" is of one video"},
+      {clip("clip = [\"a\", \"b\"], kind = \"keypoints\"", false), "run.kind: keypoints is of one video"},
+      {clip("segmenter = \"masks\", kind = \"keypoints\""), "run.kind: keypoints needs segmenter"},
+      {clip("kind = \"track\""), "run.kind: track is of rendered sequences"},
+      {"run = { kind = \"track-clip\" }\n", "run.kind: needs clip, a list of videos"},
+      {"run = { kind = \"metric\" }\n", "run.kind: 'metric' is not one of track, track-clip, keypoints"},
+      {"run = { evidence = \"both\" }\n", "run.evidence: needs clip, a list of videos, or keypoints = true"},
+      {"run = { fit_body = true, keypoints = true, evidence = \"landmarks\" }\n", "run.fit_body: needs silhouettes"},
+      {"run = { metric = \"beauty\", preset = \"thesis\" }\n", "run.metric: 'beauty' is not one of pixel-count"},
+      {"run = { sigma_deg = 100, layers = 2 }\n", "run.sigma_deg: 100 is not a number from 0.001 to 90"},
+      {"run = { hypotheses = 2, particles = 50 }\n", "run.hypotheses: not together with particles"},
+      {"run = { tracker_motion = \"diffusion\" }\n", "run.tracker_motion: needs particles, layers or preset thesis"},
+      {"run = { root = \"fixed\" }\n", "run.root: needs particles, layers or preset thesis"},
       {"without = 3\n", "without: [[without]] is wanted"},
       {"[[without]]\n", "without: names no axis"},
       {"[[without]]\nclip = [\"a\"]\n", "without.clip: no such axis"},
@@ -180,14 +242,19 @@ TEST(RunSettings, TextTellsEverySettingApart) {
   const std::string plain = settings_text({});
   EXPECT_NE(settings_text({.frames = 3}), plain);
   EXPECT_NE(settings_text({.range = std::array<double, 2>{0, 1}}), plain);
-  EXPECT_NE(settings_text({.smooth = false}), plain);
+  EXPECT_NE(settings_text({.tracker = {{"smooth", false}}}), plain);
+  EXPECT_NE(settings_text({.tracker = {{"smooth", true}}}), settings_text({.tracker = {{"smooth", false}}}));
+  EXPECT_NE(settings_text({.kind = RunKind::kTrack}), plain);
+  EXPECT_NE(sequence_text({.frames = 3}), sequence_text({}));
+  EXPECT_NE(sequence_text({.mask_iou = 0.5}), sequence_text({}));
+  EXPECT_EQ(sequence_text({.preset = "thesis", .body_height = 1.1}), sequence_text({})) << "it looks the same";
   EXPECT_NE(settings_text({.body_weight = 1.15}), plain);
   EXPECT_EQ(settings_text({}), plain);
   const std::string clip = settings_text({.clip = {"a.mp4"}});
   EXPECT_NE(clip, plain);
   EXPECT_NE(settings_text({.clip = {"b.mp4"}}), clip);
-  EXPECT_NE(settings_text({.clip = {"a.mp4"}, .evidence = "network"}), clip);
-  EXPECT_NE(settings_text({.clip = {"a.mp4"}, .floor = false}), clip);
+  EXPECT_NE(settings_text({.kind = RunKind::kKeypoints, .clip = {"a.mp4"}}), clip);
+  EXPECT_NE(settings_text({.tracker = {{"floor", false}}, .clip = {"a.mp4"}}), clip);
   EXPECT_TRUE(is_motion_file("cmu_bvh/02_01_walk.bvh"));
   EXPECT_FALSE(is_motion_file("dof:6"));
 }

@@ -116,7 +116,7 @@ TEST_F(RecordedClip, RunsFromTheFilesToScores) {
   settings.camera_names = {"front"};
   settings.truth = "walk";
   settings.segmenter = "masks";
-  settings.evidence = "silhouette";
+  settings.tracker = {{"evidence", std::string("silhouette")}};
   ASSERT_TRUE(check_clip_files(settings, data_).ok());
   TrackingRuns first(bodies, data_), second(bodies, data_);
   RunSettings other = settings;

@@ -83,14 +83,14 @@ TEST(TrackingRuns, OneSeedOneResult) {
   };
   const auto always = [] { return true; };
   const RunSettings settings{.model = "tube",
-                             .motion = "dof:6",
                              .frames = 3,
+                             .preset = "thesis",
+                             .tracker = {{"particles", int64_t{30}}},
+                             .motion = "dof:6",
                              .range = std::array<double, 2>{-10, 10},
                              .width = 80,
                              .height = 80,
                              .focal_px = 60,
-                             .preset = "thesis",
-                             .particles = 30,
                              .start = "truth"};
   TrackingRuns first(bodies, ""), second(bodies, "");
   const RunResult a = first.run(settings, 3, always).value().value();

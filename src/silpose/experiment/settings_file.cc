@@ -1,119 +1,91 @@
-#include <algorithm>
-#include <array>
-#include <functional>
-#include <map>
 #include <string_view>
 
 #include "silpose/experiment/toml_entry.h"
+#include "silpose/track/tracker_presets.h"
 
 namespace silpose {
 namespace {
 
-constexpr int kMost = 1'000'000;
-using Setter = std::function<Result<void>(const TomlEntry&, RunSettings&)>;
+// "tracker_sigma_deg".
+std::string key_of_tracker(std::string_view option) { return fmt::format("tracker_{}", with_underscores(option)); }
 
-Result<void> set_size(const TomlEntry& entry, RunSettings& run) {
-  const auto size = pair_of(entry, 16, 8192);
-  if (!size) return size.failure();
-  run.width = static_cast<int>((*size)[0]);
-  run.height = static_cast<int>((*size)[1]);
-  return {};
+// Sets the setting that `key` names; false where the table has none.
+Result<bool> set_from(const OptionTable<RunSettings>& table, std::string_view key, const TomlEntry& entry,
+                      RunSettings& run) {
+  const Option<RunSettings>* const setting = table.find(key);
+  if (setting == nullptr) return false;
+  const Result<OptionValue> value = value_of(entry);
+  if (!value) return value.failure();
+  const Result<OptionValue> read = read_option(setting->info, *value);
+  if (!read) return error("{}: {}", entry.where, read.error().message);
+  setting->set(run, *read);
+  return true;
 }
 
-// One view, as an axis of plain values gives it.
-Result<void> set_view(const TomlEntry& entry, RunSettings& run) {
-  const Result<std::string> view = text_of(entry);
-  if (!view) return view.failure();
-  run.views = {*view};
-  return {};
+// The same of an option of the tracker.
+Result<bool> set_tracker(std::string_view key, const TomlEntry& entry, RunSettings& run) {
+  const OptionInfo* const option = tracker_option_of(key);
+  if (option == nullptr) return false;
+  const Result<OptionValue> value = value_of(entry);
+  if (!value) return value.failure();
+  Result<OptionValue> read = read_option(*option, *value);
+  if (!read) return error("{}: {}", entry.where, read.error().message);
+  run.tracker.insert_or_assign(option->name, *std::move(read));
+  return true;
 }
 
-const std::map<std::string, Setter, std::less<>>& setters() {
-  static const std::map<std::string, Setter, std::less<>> kSetters = {
-      {"model", [](const TomlEntry& e, RunSettings& run) { return take(text_of(e), run.model); }},
-      {"motion", [](const TomlEntry& e, RunSettings& run) { return take(text_of(e), run.motion); }},
-      {"frames", [](const TomlEntry& e, RunSettings& run) { return take(integer_of(e, 0, kMost), run.frames); }},
-      {"fps", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.1, 10000), run.fps); }},
-      {"amplitude_deg",
-       [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0, 180), run.amplitude_deg); }},
-      {"period_s", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.01, 1e6), run.period_s); }},
-      {"range", [](const TomlEntry& e, RunSettings& run) { return take(pair_of(e, -1000, 1000), run.range); }},
-      {"views", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.views); }},
-      {"view", set_view},
-      {"size", set_size},
-      {"focal_px", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 1, 1e6), run.focal_px); }},
-      {"distance_m", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.5, 200), run.distance_m); }},
-      {"mask_noise",
-       [](const TomlEntry& e, RunSettings& run) {
-         return take(word_of(e, {"none", "shadow", "edge", "limb", "hole"}), run.mask_noise);
-       }},
-      {"mask_iou", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.05, 0.999), run.mask_iou); }},
-      {"faults_known", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.faults_known); }},
-      {"drawn_person", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.drawn_person); }},
-      {"keypoints", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.keypoints); }},
-      {"fit_body", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.fit_body); }},
-      {"clip", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.clip); }},
-      {"camera", [](const TomlEntry& e, RunSettings& run) { return take(text_of(e), run.camera); }},
-      {"camera_names", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.camera_names); }},
-      {"truth", [](const TomlEntry& e, RunSettings& run) { return take(text_of(e), run.truth); }},
-      {"truth_above",
-       [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, -1000, 1000), run.truth_above); }},
-      {"segmenter",
-       [](const TomlEntry& e, RunSettings& run) {
-         return take(word_of(e, {"learned", "background", "masks"}), run.segmenter);
-       }},
-      {"background", [](const TomlEntry& e, RunSettings& run) { return take(texts_of(e), run.background); }},
-      {"evidence",
-       [](const TomlEntry& e, RunSettings& run) {
-         return take(word_of(e, {"silhouette", "landmarks", "both", "network"}), run.evidence);
-       }},
-      {"floor", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.floor); }},
-      {"preset",
-       [](const TomlEntry& e, RunSettings& run) {
-         return take(word_of(e, {"default", "accurate", "thesis"}), run.preset);
-       }},
-      {"smooth", [](const TomlEntry& e, RunSettings& run) { return take(flag_of(e), run.smooth); }},
-      {"hypotheses",
-       [](const TomlEntry& e, RunSettings& run) { return take(integer_of(e, 1, 10000), run.hypotheses); }},
-      {"particles", [](const TomlEntry& e, RunSettings& run) { return take(integer_of(e, 1, kMost), run.particles); }},
-      {"layers", [](const TomlEntry& e, RunSettings& run) { return take(integer_of(e, 1, 1000), run.layers); }},
-      {"vertices", [](const TomlEntry& e, RunSettings& run) { return take(integer_of(e, 0, kMost), run.vertices); }},
-      {"body_height", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.5, 2), run.body_height); }},
-      {"body_weight", [](const TomlEntry& e, RunSettings& run) { return take(number_of(e, 0.3, 3), run.body_weight); }},
-      {"start",
-       [](const TomlEntry& e, RunSettings& run) {
-         return take(word_of(e, {"tracker", "truth"}), run.start);
-       }},
-  };
-  return kSetters;
-}
-
-// Settings that only runs on a recorded clip have, and those that only runs on a rendered sequence have.
-constexpr std::array<std::string_view, 8> kOfClips = {"clip",        "camera",     "camera_names", "truth",
-                                                      "truth_above", "background", "segmenter",    "floor"};
-constexpr std::array<std::string_view, 18> kOfSequences = {
-    "motion",       "fps",         "amplitude_deg", "period_s",   "range",        "views",
-    "view",         "size",        "focal_px",      "distance_m", "mask_noise",   "mask_iou",
-    "faults_known", "body_height", "body_weight",   "start",      "drawn_person", "keypoints"};
-
-}  // namespace
-
-Result<void> check_settings(const GivenSettings& given, const RunSettings& run) {
-  const bool is_recorded = run.is_recorded();
+Result<void> check_parts(const GivenSettings& given, const RunSettings& run) {
   for (const auto& [key, where] : given) {
-    if (is_recorded && std::ranges::count(kOfSequences, key) > 0) {
+    const bool of_sequence =
+        sequence_setting_table().find(key) != nullptr || subject_setting_table().find(key) != nullptr;
+    if (run.is_recorded() && of_sequence) {
       return error("{}: not together with clip: it is of rendered sequences", where);
     }
-    if (!is_recorded && std::ranges::count(kOfClips, key) > 0) return error("{}: needs clip, a list of videos", where);
-    if (!is_recorded && key == "evidence" && !run.keypoints) {
+    if (!run.is_recorded() && clip_setting_table().find(key) != nullptr) {
+      return error("{}: needs clip, a list of videos", where);
+    }
+    if (!run.is_recorded() && key == key_of_tracker("evidence") && !run.keypoints) {
       return error("{}: needs clip, a list of videos, or keypoints = true", where);
     }
-    if (key == "fit_body" && run.fit_body && run.evidence == "landmarks") {
-      return error("{}: needs silhouettes; not with evidence = \"landmarks\"", where);
-    }
   }
-  if (!is_recorded && run.evidence == "network") return error("{}: network is of recorded clips", given.at("evidence"));
-  if (!is_recorded) return {};
+  return {};
+}
+
+Result<void> check_kind(const GivenSettings& given, const RunSettings& run) {
+  if (!run.kind) return {};
+  const std::string& where = given.at("kind");
+  if (*run.kind == RunKind::kTrack && run.is_recorded()) {
+    return error("{}: track is of rendered sequences; a clip's is track-clip", where);
+  }
+  if (*run.kind != RunKind::kTrack && !run.is_recorded()) return error("{}: needs clip, a list of videos", where);
+  if (*run.kind == RunKind::kKeypoints && run.clip.size() > 1) {
+    return error("{}: keypoints is of one video: each camera has keypoints of its own", where);
+  }
+  if (*run.kind == RunKind::kKeypoints && run.segmenter != "learned") {
+    return error("{}: keypoints needs segmenter = \"learned\"", where);
+  }
+  return {};
+}
+
+Result<void> check_tracker(const GivenSettings& given, const RunSettings& run) {
+  if (const std::optional<RefusedOption> refused = refused_option(run.preset, run.tracker)) {
+    const std::string name = refused->name.substr(0, refused->name.find(' '));  // without its value
+    return error("{}: {}", given.at(key_of_tracker(name)), refused->why);
+  }
+  const auto evidence = run.tracker.find("evidence");
+  const bool by_keypoints = evidence != run.tracker.end() && evidence->second == OptionValue(std::string("landmarks"));
+  if (!by_keypoints) return {};
+  if (run.fit_body && given.contains("fit_body")) {
+    return error("{}: needs silhouettes; not with evidence = \"landmarks\"", given.at("fit_body"));
+  }
+  if (run.is_recorded() && run.segmenter != "learned") {
+    return error("{}: evidence = \"landmarks\" needs segmenter = \"learned\"", given.at(key_of_tracker("evidence")));
+  }
+  return {};
+}
+
+Result<void> check_clip(const GivenSettings& given, const RunSettings& run) {
+  if (!run.is_recorded()) return {};
   const std::string& where = given.at("clip");
   const auto is_one_a_video = [&](const std::vector<std::string>& values) {
     return values.empty() || values.size() == run.clip.size();
@@ -126,24 +98,38 @@ Result<void> check_settings(const GivenSettings& given, const RunSettings& run) 
   if (!is_one_a_video(run.background)) {
     return error("{}: {} backgrounds for {} videos", where, run.background.size(), run.clip.size());
   }
-  if (run.evidence == "network" && run.clip.size() > 1) {
-    return error("{}: evidence = \"network\" is of one video: each camera has keypoints of its own", where);
-  }
-  if (run.segmenter != "learned" && (run.evidence == "landmarks" || run.evidence == "network")) {
-    return error("{}: evidence = \"{}\" needs segmenter = \"learned\"", where, run.evidence);
+  return {};
+}
+
+}  // namespace
+
+Result<void> check_settings(const GivenSettings& given, const RunSettings& run) {
+  for (const auto check : {check_parts, check_kind, check_tracker, check_clip}) {
+    const Result<void> checked = check(given, run);
+    if (!checked) return checked;
   }
   return {};
 }
 
 Result<void> apply_settings(const toml::table& table, const std::string& where, RunSettings& run,
                             GivenSettings* given) {
-  for (const auto& [key, node] : table) {
-    const TomlEntry entry{node, fmt::format("{}.{}", where, key.str())};
-    const auto setter = setters().find(key.str());
-    if (setter == setters().end()) return error("{}: no such setting", entry.where);
-    const Result<void> set = setter->second(entry, run);
-    if (!set) return set.failure();
-    if (given != nullptr) given->insert_or_assign(std::string(key.str()), entry.where);
+  for (const auto& [toml_key, node] : table) {
+    std::string key(toml_key.str());
+    const TomlEntry entry{node, fmt::format("{}.{}", where, key)};
+    bool is_set = false;
+    for (const auto* const settings :
+         {&run_setting_table(), &sequence_setting_table(), &subject_setting_table(), &clip_setting_table()}) {
+      const Result<bool> set = set_from(*settings, key, entry, run);
+      if (!set) return set.failure();
+      is_set = is_set || *set;
+    }
+    if (!is_set) {
+      const Result<bool> set = set_tracker(key, entry, run);
+      if (!set) return set.failure();
+      if (!*set) return error("{}: no such setting", entry.where);
+      key = key_of_tracker(tracker_option_of(key)->name);
+    }
+    if (given != nullptr) given->insert_or_assign(key, entry.where);
   }
   return {};
 }

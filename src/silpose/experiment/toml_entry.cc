@@ -1,7 +1,7 @@
 #include "silpose/experiment/toml_entry.h"
 
-#include <algorithm>
-#include <cmath>
+#include <array>
+#include <utility>
 
 namespace silpose {
 
@@ -13,13 +13,6 @@ Result<std::string> text_of(const TomlEntry& entry) {
 Result<bool> flag_of(const TomlEntry& entry) {
   if (const auto flag = entry.node.value_exact<bool>()) return *flag;
   return error("{}: true or false is wanted", entry.where);
-}
-
-Result<double> number_of(const TomlEntry& entry, double low, double high) {
-  if (const auto value = entry.node.is_number() ? entry.node.value<double>() : std::nullopt) {
-    if (std::isfinite(*value) && *value >= low && *value <= high) return *value;
-  }
-  return error("{}: a number from {:g} to {:g} is wanted", entry.where, low, high);
 }
 
 Result<int> integer_of(const TomlEntry& entry, int low, int high) {
@@ -41,25 +34,20 @@ Result<std::vector<std::string>> texts_of(const TomlEntry& entry) {
   return texts;
 }
 
-Result<std::array<double, 2>> pair_of(const TomlEntry& entry, double low, double high) {
-  const toml::array* const array = entry.node.as_array();
-  if (array == nullptr || array->size() != 2) return error("{}: two numbers are wanted", entry.where);
-  std::array<double, 2> pair{};
-  for (size_t i = 0; i < 2; ++i) {
-    const Result<double> number = number_of({(*array)[i], entry.where}, low, high);
-    if (!number) return number.failure();
-    pair[i] = *number;
+Result<OptionValue> value_of(const TomlEntry& entry) {
+  const toml::node& node = entry.node;
+  if (const auto flag = node.value_exact<bool>()) return OptionValue(*flag);
+  if (const auto whole = node.value_exact<int64_t>()) return OptionValue(*whole);
+  if (const auto number = node.value_exact<double>()) return OptionValue(*number);
+  if (const auto text = node.value_exact<std::string>()) return OptionValue(*text);
+  const toml::array* const array = node.as_array();
+  if (array == nullptr) return error("{}: not a plain value or a list", entry.where);
+  if (array->size() == 2 && (*array)[0].is_number() && (*array)[1].is_number()) {
+    return OptionValue(std::array{*(*array)[0].value<double>(), *(*array)[1].value<double>()});
   }
-  return pair;
-}
-
-Result<std::string> word_of(const TomlEntry& entry, std::initializer_list<std::string_view> words) {
-  const Result<std::string> text = text_of(entry);
-  if (!text) return text.failure();
-  if (std::find(words.begin(), words.end(), *text) == words.end()) {
-    return error("{}: '{}' is not one of {}", entry.where, *text, fmt::join(words, ", "));
-  }
-  return *text;
+  Result<std::vector<std::string>> texts = texts_of(entry);
+  if (!texts) return error("{}: a list of texts or two numbers is wanted", entry.where);
+  return OptionValue(*std::move(texts));
 }
 
 }  // namespace silpose

@@ -5,14 +5,11 @@
 
 #include <toml++/toml.h>
 
-#include <array>
-#include <functional>
-#include <initializer_list>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "silpose/base/option_table.h"
 #include "silpose/base/result.h"
 #include "silpose/experiment/run_settings.h"
 
@@ -26,11 +23,11 @@ struct TomlEntry {
 
 Result<std::string> text_of(const TomlEntry& entry);
 Result<bool> flag_of(const TomlEntry& entry);
-Result<double> number_of(const TomlEntry& entry, double low, double high);  // both included
-Result<int> integer_of(const TomlEntry& entry, int low, int high);
+Result<int> integer_of(const TomlEntry& entry, int low, int high);  // both included
 Result<std::vector<std::string>> texts_of(const TomlEntry& entry);
-Result<std::array<double, 2>> pair_of(const TomlEntry& entry, double low, double high);
-Result<std::string> word_of(const TomlEntry& entry, std::initializer_list<std::string_view> words);
+
+// Whatever it is. Errors: a table, a date, or a list of anything but texts or of two numbers.
+Result<OptionValue> value_of(const TomlEntry& entry);
 
 // Takes a value over when it was read: `return take(text_of(entry), name);`
 template <class T, class U>
@@ -40,7 +37,8 @@ Result<void> take(const Result<T>& read, U& into) {
   return {};
 }
 
-// Settings that were given, and where: "motion" maps to "grid.toml: run.motion".
+// Settings that were given, and where: "motion" maps to "grid.toml: run.motion". Options of the tracker have their
+// prefix: "tracker_sigma_deg".
 using GivenSettings = std::map<std::string, std::string, std::less<>>;
 
 // Changes the settings that a table names, and notes them in `given`. `where` begins the name of each in errors.
@@ -48,9 +46,11 @@ using GivenSettings = std::map<std::string, std::string, std::less<>>;
 Result<void> apply_settings(const toml::table& table, const std::string& where, RunSettings& run,
                             GivenSettings* given = nullptr);
 
-// Whether a cell's settings belong together: those of recorded clips, or those of rendered sequences.
+// Whether a cell's settings belong together: those of recorded clips, or those of rendered sequences; those of its kind
+// of run; options of the tracker that its filter has.
 // Errors: a key that needs a clip, or that does not go with one; a clip without camera or truth, with another number of
-// names than videos, or with evidence that its segmenter does not give.
+// names than videos, or with evidence that its segmenter does not give; a key that the kind or the filter does not
+// have.
 Result<void> check_settings(const GivenSettings& given, const RunSettings& run);
 
 }  // namespace silpose

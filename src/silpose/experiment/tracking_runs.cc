@@ -6,7 +6,6 @@
 
 #include "silpose/base/clock.h"
 #include "silpose/base/parallel.h"
-#include "silpose/experiment/recorded_clip.h"
 #include "silpose/experiment/score_clip.h"
 #include "silpose/experiment/score_run.h"
 #include "silpose/synth/degraded_mask.h"
@@ -14,31 +13,26 @@
 #include "silpose/synth/simulated_keypoints.h"
 #include "silpose/track/body_fit.h"
 #include "silpose/track/track_clip.h"
+#include "silpose/track/tracker_presets.h"
 
 namespace silpose {
 namespace {
 
 // The one place that turns settings into options of the tracker. Errors: an option that it does not have.
-Result<void> choose_tracker(const RunSettings& settings, TrackerOptions& options) {
-  options.preset = settings.preset;
-  options.num_particles = settings.particles;
-  options.num_layers = settings.layers;
-  options.lod_vertices = settings.vertices;
-  options.num_hypotheses = settings.hypotheses;
-  options.smooth = settings.smooth;
-  options.floor = settings.floor;
-  if (settings.is_recorded() || settings.keypoints) {
-    options.evidence = settings.evidence == "silhouette"  ? EvidenceKind::kSilhouette
-                       : settings.evidence == "landmarks" ? EvidenceKind::kKeypoints
-                                                          : EvidenceKind::kBoth;
-    options.landmarks = settings.keypoints || settings.segmenter == "learned";  // as `silpose track` starts
-  }
+Result<TrackerOptions> choose_tracker(const RunSettings& settings, std::shared_ptr<const BodyModel> body,
+                                      std::vector<PinholeCamera> cameras, uint64_t seed) {
   try {
+    TrackerOptions options = make_tracker_options(settings.preset, settings.tracker);
+    options.body = std::move(body);
+    options.cameras = std::move(cameras);
+    options.seed = seed;
+    const bool learned = settings.is_recorded() && settings.segmenter == "learned";
+    options.landmarks = settings.keypoints || learned;  // as `silpose track` starts
     options.check();
+    return options;
   } catch (const std::invalid_argument& wrong) {
     return error("the tracker refuses its options: {}", wrong.what());
   }
-  return {};
 }
 
 // The model of a person some percent taller or heavier than `body`.
@@ -207,22 +201,9 @@ Result<std::shared_ptr<const BodyModel>> TrackingRuns::body(const std::string& m
 }
 
 Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings, uint64_t seed) {
-  RunSettings sequence_only = settings;  // what does not touch the masks is as by default
-  const RunSettings defaults;
-  sequence_only.preset = defaults.preset;
-  sequence_only.smooth = defaults.smooth;
-  sequence_only.hypotheses = defaults.hypotheses;
-  sequence_only.particles = defaults.particles;
-  sequence_only.layers = defaults.layers;
-  sequence_only.vertices = defaults.vertices;
-  sequence_only.body_height = defaults.body_height;
-  sequence_only.body_weight = defaults.body_weight;
-  sequence_only.start = defaults.start;
-  sequence_only.evidence = defaults.evidence;
-  sequence_only.fit_body = defaults.fit_body;
   const bool is_drawn = settings.motion == "static" || settings.motion == "random" || settings.mask_noise != "none" ||
                         settings.drawn_person || settings.keypoints;
-  const std::string key = fmt::format("{} {}", settings_text(sequence_only), is_drawn ? seed : 0);
+  const std::string key = fmt::format("{} {}", sequence_text(settings), is_drawn ? seed : 0);
   if (seen_ && seen_->key == key) return &*seen_;
 
   seen_.reset();
@@ -270,7 +251,19 @@ Result<const TrackingRuns::Seen*> TrackingRuns::see(const RunSettings& settings,
 
 Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, uint64_t seed,
                                                    const std::function<bool()>& go_on) {
-  if (settings.is_recorded()) return run_on_clip(settings, seed, go_on);
+  switch (settings.run_kind()) {
+    case RunKind::kTrack:
+      return track_sequence(settings, seed, go_on);
+    case RunKind::kTrackClip:
+      return track_recorded(settings, seed, go_on);
+    case RunKind::kKeypoints:
+      return score_network(settings, go_on);
+  }
+  return error("no such kind of run");
+}
+
+Result<std::optional<RunResult>> TrackingRuns::track_sequence(const RunSettings& settings, uint64_t seed,
+                                                              const std::function<bool()>& go_on) {
   const Stopwatch all;
   const auto seen = see(settings, seed);
   if (!seen) return seen.failure();
@@ -280,15 +273,11 @@ Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, 
   const auto tracker_body = body(model_beside(settings.model, **given_body, settings));
   if (!tracker_body) return tracker_body.failure();
 
-  TrackerOptions options;
-  options.body = *tracker_body;
-  options.cameras = sequence.cameras;
-  options.seed = seed;
-  if (settings.start == "truth") options.initial_pose = sequence.poses[0];
-  const Result<void> chosen = choose_tracker(settings, options);
-  if (!chosen) return chosen.failure();
+  Result<TrackerOptions> options = choose_tracker(settings, *tracker_body, sequence.cameras, seed);
+  if (!options) return options.failure();
+  if (settings.start == "truth") options->initial_pose = sequence.poses[0];
   if (!go_on()) return std::optional<RunResult>();
-  auto result = track_and_score(std::move(options), settings.fit_body, (*seen)->instants, go_on,
+  auto result = track_and_score(*std::move(options), settings.fit_body, (*seen)->instants, go_on,
                                 [&](const BodyModel& tracked_body, std::span<const StepReport> reports) {
                                   return score_run(sequence, tracked_body, reports);
                                 });
@@ -300,50 +289,66 @@ Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, 
   return result;
 }
 
-Result<std::optional<RunResult>> TrackingRuns::run_on_clip(const RunSettings& settings, uint64_t seed,
-                                                           const std::function<bool()>& go_on) {
-  const Stopwatch all;
-  const auto tracker_body = body(settings.model);
-  if (!tracker_body) return tracker_body.failure();
+Result<std::optional<TrackingRuns::RecordedClip>> TrackingRuns::read_clip(const RunSettings& settings,
+                                                                          const std::function<bool()>& go_on) {
+  RecordedClip clip;
+  const auto clip_body = body(settings.model);
+  if (!clip_body) return clip_body.failure();
+  clip.body = *clip_body;
   Result<std::vector<PinholeCamera>> cameras = read_clip_cameras(settings, data_);
   if (!cameras) return cameras.failure();
-  const Result<ClipTruth> truth = read_clip_truth(settings, data_, **tracker_body);
+  clip.cameras = *std::move(cameras);
+  Result<ClipTruth> truth = read_clip_truth(settings, data_, *clip.body);
   if (!truth) return truth.failure();
+  clip.truth = *std::move(truth);
 
   ClipInput input{.videos = {}, .segmenter = settings.segmenter, .backgrounds = {}, .num_frames = settings.frames};
   for (const std::string& video : settings.clip) input.videos.push_back((data_ / video).string());
   for (const std::string& background : settings.background) {
     input.backgrounds.push_back(background == "auto" ? background : (data_ / background).string());
   }
-  const auto instants = clips_.read(input, go_on);
+  auto instants = clips_.read(input, go_on);
   if (!instants) return instants.failure();
-  if (!instants->has_value()) return std::optional<RunResult>();
-  for (size_t c = 0; c < cameras->size(); ++c) {
-    const PinholeCamera& camera = (*cameras)[c];
-    const Mask& mask = (**instants)[0].observations[c].mask;
+  if (!instants->has_value()) return std::optional<RecordedClip>();
+  clip.instants = **std::move(instants);
+  for (size_t c = 0; c < clip.cameras.size(); ++c) {
+    const PinholeCamera& camera = clip.cameras[c];
+    const Mask& mask = clip.instants[0].observations[c].mask;
     if (mask.width() == camera.width && mask.height() == camera.height) continue;
     return error("{}: camera {} is calibrated for {}x{}, the video is {}x{}", settings.camera, camera.name,
                  camera.width, camera.height, mask.width(), mask.height());
   }
+  return std::optional(std::move(clip));
+}
 
-  if (settings.evidence == "network") {
-    Result<RunResult> scored = score_keypoints(*truth, **tracker_body, (*cameras)[0], **instants);
-    if (!scored) return scored.failure();
-    scored->wall_s = all.seconds();
-    return std::optional<RunResult>(std::move(*scored));
-  }
-  TrackerOptions options;
-  options.body = *tracker_body;
-  options.cameras = *cameras;
-  options.seed = seed;
-  const Result<void> chosen = choose_tracker(settings, options);
-  if (!chosen) return chosen.failure();
-  auto result = track_and_score(std::move(options), settings.fit_body, **instants, go_on,
+Result<std::optional<RunResult>> TrackingRuns::track_recorded(const RunSettings& settings, uint64_t seed,
+                                                              const std::function<bool()>& go_on) {
+  const Stopwatch all;
+  const auto clip = read_clip(settings, go_on);
+  if (!clip) return clip.failure();
+  if (!clip->has_value()) return std::optional<RunResult>();
+  const RecordedClip& recorded = **clip;
+  Result<TrackerOptions> options = choose_tracker(settings, recorded.body, recorded.cameras, seed);
+  if (!options) return options.failure();
+  auto result = track_and_score(*std::move(options), settings.fit_body, recorded.instants, go_on,
                                 [&](const BodyModel& tracked_body, std::span<const StepReport> reports) {
-                                  return score_clip(*truth, tracked_body, *cameras, reports);
+                                  return score_clip(recorded.truth, tracked_body, recorded.cameras, reports);
                                 });
   if (result && result->has_value()) (*result)->wall_s = all.seconds();
   return result;
+}
+
+Result<std::optional<RunResult>> TrackingRuns::score_network(const RunSettings& settings,
+                                                             const std::function<bool()>& go_on) {
+  const Stopwatch all;
+  const auto clip = read_clip(settings, go_on);
+  if (!clip) return clip.failure();
+  if (!clip->has_value()) return std::optional<RunResult>();
+  const RecordedClip& recorded = **clip;
+  Result<RunResult> scored = score_keypoints(recorded.truth, *recorded.body, recorded.cameras[0], recorded.instants);
+  if (!scored) return scored.failure();
+  scored->wall_s = all.seconds();
+  return std::optional<RunResult>(*std::move(scored));
 }
 
 }  // namespace silpose

@@ -15,6 +15,7 @@
 #include "silpose/base/result.h"
 #include "silpose/body/body_model.h"
 #include "silpose/experiment/clip_reader.h"
+#include "silpose/experiment/recorded_clip.h"
 #include "silpose/experiment/run_result.h"
 #include "silpose/experiment/run_settings.h"
 #include "silpose/synth/scene.h"
@@ -35,8 +36,8 @@ class TrackingRuns {
   // The seed is that of the motion, the masks' noise and the tracker. `go_on` is asked after each frame; when it says
   // false there is no result. Scores: those of score_run(), frames_per_second (the tracker alone), start_s, mask_iou
   // (of the masks given to the tracker, first camera) and, of motion capture, retargeting_residual_deg. Of a recorded
-  // clip: those of score_clip() or, of evidence `network`, score_keypoints(); and the tracker's times. The body's
-  // height counts as known, and the body is not fitted. Errors: a body, motion, view or option that is not there; the
+  // clip: those of score_clip() and the tracker's times or, of kind `keypoints`, those of score_keypoints(). The body's
+  // height counts as known. Errors: a body, motion, view or option that is not there; the
   // motion does not fit into the picture. Of a clip: those of read_clip_cameras(), read_clip_truth() and
   // ClipReader::read(); videos of another size than their cameras.
   Result<std::optional<RunResult>> run(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
@@ -50,8 +51,19 @@ class TrackingRuns {
     std::optional<double> residual_deg;
     double mask_iou = 1;
   };
-  Result<std::optional<RunResult>> run_on_clip(const RunSettings& settings, uint64_t seed,
-                                               const std::function<bool()>& go_on);
+  // A recorded clip, segmented, and what is known of it.
+  struct RecordedClip {
+    std::shared_ptr<const BodyModel> body;
+    std::vector<PinholeCamera> cameras;  // [C]
+    ClipTruth truth;
+    std::vector<ClipInstant> instants;
+  };
+  using Outcome = Result<std::optional<RunResult>>;
+  // One function per kind of run.
+  Outcome track_sequence(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
+  Outcome track_recorded(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
+  Outcome score_network(const RunSettings& settings, const std::function<bool()>& go_on);
+  Result<std::optional<RecordedClip>> read_clip(const RunSettings& settings, const std::function<bool()>& go_on);
   Result<const Seen*> see(const RunSettings& settings, uint64_t seed);
   Result<std::shared_ptr<const BodyModel>> body(const std::string& model);
 

@@ -1,6 +1,7 @@
 #include "silpose/filter/resampling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -78,15 +79,35 @@ class CombResampler final : public Resampler {
   double regenerate_fraction_;
 };
 
+struct NamedResampler {
+  std::string_view name;
+  std::unique_ptr<Resampler> (*make)(double regenerate_fraction);
+};
+
+constexpr std::array kResamplers = {NamedResampler{"comb",
+                                                   [](double fraction) -> std::unique_ptr<Resampler> {
+                                                     return std::make_unique<CombResampler>(fraction);
+                                                   }},
+                                    NamedResampler{"systematic", [](double) -> std::unique_ptr<Resampler> {
+                                                     return std::make_unique<SystematicResampler>();
+                                                   }}};
+constexpr auto kNames = [] {
+  std::array<std::string_view, kResamplers.size()> names;
+  for (size_t i = 0; i < names.size(); ++i) names[i] = kResamplers[i].name;
+  return names;
+}();
+
 }  // namespace
+
+std::span<const std::string_view> resampler_names() { return kNames; }
 
 Result<std::unique_ptr<Resampler>> make_resampler(const std::string& name, double regenerate_fraction) {
   if (!(regenerate_fraction >= 0 && regenerate_fraction < 1)) {
     return error("regenerated fraction {}: must be at least 0 and below 1", regenerate_fraction);
   }
-  if (name == "systematic") return std::unique_ptr<Resampler>(std::make_unique<SystematicResampler>());
-  if (name == "comb") return std::unique_ptr<Resampler>(std::make_unique<CombResampler>(regenerate_fraction));
-  return error("resampling '{}': not one of comb, systematic", name);
+  const auto resampler = std::ranges::find(kResamplers, name, &NamedResampler::name);
+  if (resampler == kResamplers.end()) return error("resampling '{}': not one of {}", name, fmt::join(kNames, ", "));
+  return resampler->make(regenerate_fraction);
 }
 
 }  // namespace silpose

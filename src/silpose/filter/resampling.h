@@ -20,6 +20,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "silpose/base/result.h"
@@ -38,8 +39,11 @@ class Resampler {
                                                   Rng& rng) const = 0;
 };
 
-// `name` is "systematic" or "comb"; `regenerate_fraction`, in [0, 1), is comb's share of particles to be regenerated.
-// Errors: unknown name, or a scheme that is not built; fraction out of range.
+// The names that make_resampler() knows.
+std::span<const std::string_view> resampler_names();
+
+// `regenerate_fraction`, in [0, 1), is comb's share of particles to be regenerated.
+// Errors: an unknown name; the fraction is out of range.
 Result<std::unique_ptr<Resampler>> make_resampler(const std::string& name, double regenerate_fraction = 0.2);
 
 }  // namespace silpose

@@ -1,6 +1,7 @@
 #include "silpose/motion/motion_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "silpose/base/check.h"
@@ -140,15 +141,33 @@ class FirstOrderAugmented final : public MotionModel {
   std::vector<double> deviation_;  // [2 D]
 };
 
+struct NamedModel {
+  std::string_view name;
+  std::unique_ptr<MotionModel> (*make)(const Skeleton& skeleton, const MotionOptions& options);
+};
+
+template <class Model>
+std::unique_ptr<MotionModel> make(const Skeleton& skeleton, const MotionOptions& options) {
+  return std::make_unique<Model>(skeleton, options);
+}
+
+constexpr std::array kModels = {NamedModel{"diffusion", make<Diffusion>},
+                                NamedModel{"first-order-augmented", make<FirstOrderAugmented>}};
+constexpr auto kNames = [] {
+  std::array<std::string_view, kModels.size()> names;
+  for (size_t i = 0; i < names.size(); ++i) names[i] = kModels[i].name;
+  return names;
+}();
+
 }  // namespace
+
+std::span<const std::string_view> motion_model_names() { return kNames; }
 
 Result<std::unique_ptr<MotionModel>> make_motion_model(const std::string& name, const Skeleton& skeleton,
                                                        const MotionOptions& options) {
-  if (name == "diffusion") return std::unique_ptr<MotionModel>(std::make_unique<Diffusion>(skeleton, options));
-  if (name == "first-order-augmented") {
-    return std::unique_ptr<MotionModel>(std::make_unique<FirstOrderAugmented>(skeleton, options));
-  }
-  return error("motion '{}': not one of diffusion, first-order-augmented", name);
+  const auto model = std::ranges::find(kModels, name, &NamedModel::name);
+  if (model == kModels.end()) return error("motion '{}': not one of {}", name, fmt::join(kNames, ", "));
+  return model->make(skeleton, options);
 }
 
 }  // namespace silpose

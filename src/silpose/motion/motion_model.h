@@ -16,6 +16,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "silpose/base/result.h"
@@ -53,8 +54,11 @@ class MotionModel {
   virtual void diffuse(StateBatch& states, std::span<const double> deviation, uint64_t seed, uint64_t stream) const = 0;
 };
 
+// The names that make_motion_model() knows.
+std::span<const std::string_view> motion_model_names();
+
 // A model of a skeleton by its name on the command line; it keeps a copy of the skeleton.
-// Errors: a name that is unknown or not built. Throws std::invalid_argument for options out of range.
+// Errors: an unknown name. Throws std::invalid_argument for options out of range.
 Result<std::unique_ptr<MotionModel>> make_motion_model(const std::string& name, const Skeleton& skeleton,
                                                        const MotionOptions& options = {});
 

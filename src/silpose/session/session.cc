@@ -33,9 +33,9 @@ class Session::Impl {
   Impl(ObservationSource& source, SessionOptions options)
       : options_(std::move(options)), source_(source), sinks_(options_.sinks) {
     options_.tracker.check();
-    result_.used = options_.tracker.resolved();
+    result_.used = options_.tracker;
     result_.body = options_.tracker.body;
-    is_whole_ = *result_.used.smooth || options_.fit_body;
+    is_whole_ = result_.used.smooths() || options_.fit_body;
     check(!is_whole_ || !source.video().is_live(), "Session: smoothing and fitting a body need a recorded clip");
     check(!options_.checkpoint || !source.video().is_live(), "Session: a live camera cannot be resumed");
     if (is_whole_ && options_.checkpoint) options_.checkpoint->masks->keep_confidence();

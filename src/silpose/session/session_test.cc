@@ -39,14 +39,14 @@ class SessionTest : public FolderTest {
     SessionOptions options;
     options.tracker.body = std::make_shared<BodyModel>(make_test_body());
     for (int c = 0; c < num_cameras; ++c) options.tracker.cameras.push_back(tube_camera(c));
-    options.tracker.num_hypotheses = 2;
+    options.tracker.fitted()->num_hypotheses = 2;
     options.tracker.proposal = std::make_shared<TubeStarts>();
     options.sinks = {sink_};
     return options;
   }
   SessionOptions smoothed(int num_cameras = 1) {
     SessionOptions whole = options(num_cameras);
-    whole.tracker.smooth = true;
+    whole.tracker.fitted()->smooth = true;
     return whole;
   }
   SessionOptions with_checkpoint(SessionOptions options) {

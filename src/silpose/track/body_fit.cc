@@ -370,7 +370,7 @@ std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const C
                                 std::span<const std::vector<double>> poses, const std::function<bool()>& proceed) {
   check_poses(*options.body, clip.size(), poses);
   const std::vector<PinholeCamera>& cameras = options.cameras;
-  const bool one_camera = cameras.size() == 1, floor = *options.resolved().floor;
+  const bool one_camera = cameras.size() == 1, floor = options.has_floor();
   const EvidenceKind evidence =
       options.evidence == EvidenceKind::kSilhouette ? EvidenceKind::kSilhouette : EvidenceKind::kBoth;
   const JudgedClip judged(clip, cameras.size());
@@ -405,13 +405,13 @@ std::optional<BodyFit> fit_body(const TrackerOptions& options, std::span<const C
 
 TrackerOptions options_before_fit(const TrackerOptions& options) {
   TrackerOptions pass = options_of_pass(options);
-  if (options.cameras.size() == 1) pass.floor = false;
+  if (options.cameras.size() == 1 && pass.fitted() != nullptr) pass.fitted()->floor = false;
   return pass;
 }
 
 std::string why_not_fitted(const TrackerOptions& options) {
   if (options.cameras.size() > 1) return "there is no frame in which two cameras see the subject";
-  return *options.resolved().floor
+  return options.has_floor()
              ? "no frame has 3D keypoints, and the subject does not stand on the floor y = 0 of the camera file"
              : "no frame has 3D keypoints, and no floor is known";
 }

@@ -40,7 +40,7 @@ class BodyFitTest : public ::testing::Test {
     TrackerOptions options;
     options.body = body_;
     options.cameras = cameras_;
-    options.floor = false;
+    options.fitted()->floor = false;
     return options;
   }
 
@@ -115,7 +115,7 @@ TEST_F(BodyFitTest, OneCameraTellsTheSizeByTheFloor) {
   larger.body = std::make_shared<const BodyModel>(scaled(*body_, 1.1));
   larger.cameras = {cameras_[0]};
   EXPECT_FALSE(fit_body(larger, clip_, poses_).has_value()) << "without a floor";
-  larger.floor = true;
+  larger.fitted()->floor = true;
   const BodyFit fit = fit_body(larger, clip_, poses_).value();
   EXPECT_NEAR(fit.size->factor, 1 / 1.1, 0.005);
   EXPECT_NEAR(fit.body->height_m, 1.5, 0.01);
@@ -177,7 +177,7 @@ class OneCameraFitTest : public ::testing::Test {
     TrackerOptions options;
     options.body = body_;
     options.cameras = sequence_.cameras;
-    options.floor = false;
+    options.fitted()->floor = false;
     options.evidence = evidence;
     return options;
   }
@@ -232,7 +232,7 @@ TEST_F(OneCameraFitTest, LeavesOutKeypointsWhoseSidesAreExchanged) {
 TEST_F(OneCameraFitTest, ASizeThatIsNotKnownComesFromTheFloor) {
   TrackerOptions larger = options();
   larger.body = std::make_shared<const BodyModel>(scaled(*body_, 1.08));
-  larger.floor = true;
+  larger.fitted()->floor = true;
   larger.size_deviation = 0.05;
   const Eigen::Vector3d centre = sequence_.cameras[0].centre_in_world();
   for (std::vector<double>& pose : sequence_.poses) {
@@ -253,7 +253,7 @@ TEST_F(OneCameraFitTest, OptionsTakeTheFittedBody) {
   const TrackerOptions after = options_after_fit(options(), fitted.value());
   EXPECT_EQ(after.body, fitted->body);
   EXPECT_EQ(after.size_deviation, fitted->size_deviation);
-  EXPECT_FALSE(*options_before_fit(options()).floor) << "one camera";
+  EXPECT_FALSE(options_before_fit(options()).has_floor()) << "one camera";
 }
 
 }  // namespace

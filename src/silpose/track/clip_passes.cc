@@ -14,9 +14,9 @@ constexpr double kPassShare = 0.35;  // [guess] of the whole work, one pass over
 }  // namespace
 
 TrackerOptions options_of_pass(const TrackerOptions& options) {
-  TrackerOptions pass = options.resolved();
-  pass.smooth = false;
-  if (*pass.lod_vertices == 0 || *pass.lod_vertices > kTrackingLevel) pass.lod_vertices = kTrackingLevel;
+  TrackerOptions pass = options;
+  if (pass.fitted() != nullptr) pass.fitted()->smooth = false;
+  if (pass.lod_vertices == 0 || pass.lod_vertices > kTrackingLevel) pass.lod_vertices = kTrackingLevel;
   return pass;
 }
 

@@ -25,7 +25,7 @@ class ClipPasses {
  public:
   static constexpr size_t kNumPasses = 3;
 
-  // Over the instants `first` to `last`, the first and the last that are seen. `options` are resolved. The clip must
+  // Over the instants `first` to `last`, the first and the last that are seen. The clip must
   // outlive this.
   ClipPasses(const TrackerOptions& options, const JudgedClip& clip, size_t first, size_t last);
 

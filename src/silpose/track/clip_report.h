@@ -26,8 +26,7 @@ struct SmoothedClip {
 };
 
 // Fills in poses, spreads, states and overlap of reports [N] of these instants. The spread is the covariance of the
-// fit, what the passes disagree about (clip_spread.h), and the error of the body (body_error.h). `options` are
-// resolved.
+// fit, what the passes disagree about (clip_spread.h), and the error of the body (body_error.h).
 void report_smoothed(const TrackerOptions& options, const SmoothedClip& clip, std::span<StepReport> reports);
 
 }  // namespace silpose

@@ -68,9 +68,9 @@ std::vector<size_t> spaced_out(const JudgedClip& clip, const std::vector<size_t>
 size_t best_explained(const TrackerOptions& options, const JudgedClip& clip, const std::vector<size_t>& starts,
                       const std::function<bool()>& proceed) {
   // Passes start from scratch, so a coarse mesh will do to choose.
-  const auto body = level_of_detail(options.body, *options_of_pass(options).lod_vertices);
+  const auto body = level_of_detail(options.body, options_of_pass(options).lod_vertices);
   const CoverageLikelihood likelihood(body, options.cameras);
-  const Plausibility plausibility(body, *options.floor);
+  const Plausibility plausibility(body, options.has_floor());
   double best = -std::numeric_limits<double>::infinity();
   size_t chosen = starts.front();
   const InitialisationOptions search{.seed = options.seed, .evidence = start_evidence(options)};

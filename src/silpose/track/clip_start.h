@@ -12,7 +12,7 @@
 namespace silpose {
 
 // Of a few instants whose silhouettes look clear, apart in time, the one where a pose explains the observations best.
-// With an initial pose: the first instant that is seen. `options` are resolved; `seen` [T]. `proceed`: false ends the
+// With an initial pose: the first instant that is seen. `seen` [T]. `proceed`: false ends the
 // search early.
 // REQUIRES: an instant that is seen.
 size_t choose_start(const TrackerOptions& options, const JudgedClip& clip, const std::vector<bool>& seen,

@@ -4,6 +4,7 @@
 
 #include "silpose/render/silhouette.h"
 #include "silpose/track/keypoints_for_test.h"
+#include "silpose/track/tracker_presets.h"
 
 namespace silpose {
 namespace {
@@ -18,11 +19,10 @@ class ClipStartTest : public testing::Test {
     }
   }
   TrackerOptions options() const {
-    TrackerOptions options;
+    TrackerOptions options = accurate_preset();
     options.body = body_;
     options.cameras = {camera_};
-    options.preset = "accurate";
-    return options.resolved();
+    return options;
   }
   size_t start(const TrackerOptions& options, const std::vector<bool>& seen) const {
     return choose_start(options, JudgedClip(clip_, 1), seen, [] { return true; });

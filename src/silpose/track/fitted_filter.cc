@@ -17,7 +17,7 @@ constexpr double kNoiseMemory = 10;
 constexpr double kFarBetter = 0.5;  // [guess] of the noise until now
 
 MixtureOptions mixture_options(const TrackerOptions& options) {
-  return {.num_hypotheses = *options.num_hypotheses, .seed = options.seed};
+  return {.num_hypotheses = options.fitted()->num_hypotheses, .seed = options.seed};
 }
 
 std::vector<Eigen::VectorXd> poses_of(std::span<const StartingPose> starts) {

@@ -18,7 +18,7 @@ namespace silpose {
 
 class FittedFilter final : public PoseFilter {
  public:
-  // `options` are resolved.
+  // REQUIRES: options.fitted().
   FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
                const std::shared_ptr<const CoverageLikelihood>& coarse,
                std::shared_ptr<const Plausibility> plausibility);

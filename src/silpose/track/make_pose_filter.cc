@@ -70,9 +70,8 @@ PoseSpread spread_of(const BodyModel& body, const ParticleSet& particles) {
 }
 
 LikelihoodOptions likelihood_options(const TrackerOptions& options) {
-  return {.metric = *options.metric == "coverage" ? Metric::kCoverage : Metric::kPixelCount,
-          .sharpness = *options.sharpness,
-          .evidence = options.evidence};
+  return {
+      .metric = options.sampling()->metric, .sharpness = options.sampling()->sharpness, .evidence = options.evidence};
 }
 
 LikelihoodOptions cropped_options(const TrackerOptions& options) {
@@ -86,7 +85,7 @@ LikelihoodOptions cropped_options(const TrackerOptions& options) {
 class Recognition {
  public:
   explicit Recognition(const TrackerOptions& options) : body_(options.body), cameras_(options.cameras) {
-    if (*options.regenerate_from != "network" || *options.regenerate == 0) return;
+    if (options.sampling()->regenerate_from != RegenerateFrom::kNetwork || options.sampling()->regenerate == 0) return;
     for (const PinholeCamera& camera : options.cameras) proposals_.emplace_back(options.body, camera);
   }
   [[nodiscard]] StateBatch poses(std::span<const Observation> observations) const {
@@ -111,10 +110,10 @@ class JointFilter final : public PoseFilter {
  public:
   JointFilter(const TrackerOptions& options, Renderers renderers)
       : likelihood_(std::move(renderers), likelihood_options(options)),
-        filter_(
-            options, likelihood_,
-            dofs_where(options.body->skeleton, [&](const Dof& dof) { return !options.root_fixed || !is_root(dof); }),
-            options.seed),
+        filter_(*options.sampling(), likelihood_,
+                dofs_where(options.body->skeleton,
+                           [&](const Dof& dof) { return !options.sampling()->root_fixed || !is_root(dof); }),
+                options.seed),
         recognition_(options) {}
 
   void start(std::span<const StartingPose> starts) override {
@@ -148,16 +147,16 @@ class TwoFilters final : public PoseFilter {
  public:
   TwoFilters(const TrackerOptions& options, const Renderers& renderers)
       : body_(options.body),
-        root_fixed_(options.root_fixed),
+        root_fixed_(options.sampling()->root_fixed),
         cropped_(renderers, cropped_options(options)),
         whole_(renderers, likelihood_options(options)),
-        pose_filter_(options, cropped_,
+        pose_filter_(*options.sampling(), cropped_,
                      dofs_where(body_->skeleton,
                                 [&](const Dof& dof) {
                                   return root_fixed_ ? !is_root(dof) : !(is_root(dof) && dof.is_translation);
                                 }),
                      options.seed),
-        root_filter_(options, whole_, dofs_where(body_->skeleton, is_root), options.seed + 1),
+        root_filter_(*options.sampling(), whole_, dofs_where(body_->skeleton, is_root), options.seed + 1),
         recognition_(options) {}
 
   void start(std::span<const StartingPose> starts) override {
@@ -223,10 +222,10 @@ class TwoFilters final : public PoseFilter {
 
 std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const Likelihoods& likelihoods) {
   options.check();
-  if (options.num_hypotheses) {
+  if (options.fitted() != nullptr) {
     return std::make_unique<FittedFilter>(options, likelihoods.fine, likelihoods.coarse, likelihoods.plausibility);
   }
-  if (options.preset == "thesis") return std::make_unique<TwoFilters>(options, likelihoods.renderers);
+  if (options.sampling()->separate_root) return std::make_unique<TwoFilters>(options, likelihoods.renderers);
   return std::make_unique<JointFilter>(options, likelihoods.renderers);
 }
 

@@ -22,7 +22,7 @@ struct Likelihoods {
   std::shared_ptr<const Plausibility> plausibility;
 };
 
-// The filter of `options`, which are resolved. It shares the body and the likelihoods and copies what else it needs:
+// The filter of `options`. It shares the body and the likelihoods and copies what else it needs:
 // neither argument has to outlive it.
 // Errors: throws std::invalid_argument as TrackerOptions::check().
 std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const Likelihoods& likelihoods);

@@ -80,6 +80,7 @@ TEST_F(RecoveryTest, FacesWhereLandmarksSaySoAndStaysSoWhereTheyAreWrongForAMome
   options.body = body_;
   options.cameras = {camera_};
   options.landmarks = true;
+  options.evidence = EvidenceKind::kSilhouette;
   Tracker tracker(options);
   const auto names = landmark_names(*body_);
   for (int t = 0; t < 6; ++t) {

@@ -17,20 +17,19 @@ constexpr double kSurvivalRate = 0.5;  // of each annealing layer
 
 }  // namespace
 
-SamplingFilter::SamplingFilter(const TrackerOptions& options, const SilhouetteLikelihood& likelihood,
+SamplingFilter::SamplingFilter(const SamplingOptions& options, const SilhouetteLikelihood& likelihood,
                                std::vector<bool> free_dofs, uint64_t seed)
     : options_(options),
       likelihood_(likelihood),
       free_dofs_(std::move(free_dofs)),
       seed_(seed),
-      motion_(make_motion_model(*options.motion, options.body->skeleton, {.sigma_deg = *options.sigma_deg}).value()),
-      resampler_(make_resampler(*options.resampling, *options.regenerate).value()) {}
+      motion_(make_motion_model(options.motion, skeleton(), {.sigma_deg = options.sigma_deg}).value()),
+      resampler_(make_resampler(options.resampling, options.regenerate).value()) {}
 
 void SamplingFilter::start(std::span<const double> pose) {
-  const Skeleton& skeleton = options_.body->skeleton;
-  check(std::ssize(pose) == skeleton.num_dofs(), "SamplingFilter: start pose of {} numbers", pose.size());
+  check(std::ssize(pose) == skeleton().num_dofs(), "SamplingFilter: start pose of {} numbers", pose.size());
   const StateBatch one = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), std::ssize(pose));
-  StateBatch states = motion_->states_from_poses(one.replicate(*options_.num_particles, 1));
+  StateBatch states = motion_->states_from_poses(one.replicate(options_.num_particles, 1));
   std::vector<double> deviation(motion_->deviation().begin(), motion_->deviation().end());
   const std::vector<int> columns = free_columns();
   for (size_t d = 0; d < deviation.size(); ++d) {
@@ -42,19 +41,17 @@ void SamplingFilter::start(std::span<const double> pose) {
 }
 
 void SamplingFilter::make_filter(StateBatch states) {
-  if (*options_.num_layers == 1) {
-    // The option is a share up to and including 1, at which every step resamples.
-    const double below = options_.resample_below >= 1 ? 2 : options_.resample_below;
+  if (options_.num_layers == 1) {
     filter_.emplace<ParticleFilter>(std::move(states), resampler_,
-                                    ParticleFilterOptions{.resample_below = below, .seed = seed_});
+                                    ParticleFilterOptions{.resample_below = options_.resample_below, .seed = seed_});
   } else {
-    AnnealedFilterOptions annealed{.num_layers = *options_.num_layers,
+    AnnealedFilterOptions annealed{.num_layers = options_.num_layers,
                                    .survival_rate = kSurvivalRate,
                                    .deviation = {motion_->deviation().begin(), motion_->deviation().end()},
                                    .adaptive_noise = true,
-                                   .circular = periodic_dofs(options_.body->skeleton),
+                                   .circular = periodic_dofs(skeleton()),
                                    .seed = seed_};
-    for (const auto& limb : limb_blocks(options_.body->skeleton)) annealed.blocks.push_back(motion_->columns_of(limb));
+    for (const auto& limb : limb_blocks(skeleton())) annealed.blocks.push_back(motion_->columns_of(limb));
     filter_.emplace<AnnealedFilter>(std::move(states), resampler_, std::move(annealed));
   }
 }
@@ -148,7 +145,7 @@ void SamplingFilter::restore(std::optional<FilterState> state) {
   filter_.emplace<std::monostate>();
   if (!state) return;
   const ParticleSet& particles = state->particles;
-  check(particles.size() == *options_.num_particles && std::ssize(particles.log_weights) == particles.size() &&
+  check(particles.size() == options_.num_particles && std::ssize(particles.log_weights) == particles.size() &&
             particles.states.cols() == std::ssize(motion_->deviation()),
         "SamplingFilter: not a state of it: {} particles of {} numbers", particles.size(), particles.states.cols());
   make_filter(particles.states);
@@ -160,7 +157,7 @@ void SamplingFilter::restore(std::optional<FilterState> state) {
 }
 
 std::vector<double> SamplingFilter::estimate() const {
-  return pose_estimate(options_.body->skeleton, particles(), *options_.estimate, motion_->deviation());
+  return pose_estimate(skeleton(), particles(), options_.estimate, motion_->deviation());
 }
 
 std::vector<int> SamplingFilter::columns_where(bool moves) const {

@@ -21,8 +21,8 @@ namespace silpose {
 
 class SamplingFilter {
  public:
-  // `free_dofs` [D] says which DOF move. `options` are resolved, and copied. The likelihood outlives the filter.
-  SamplingFilter(const TrackerOptions& options, const SilhouetteLikelihood& likelihood, std::vector<bool> free_dofs,
+  // `free_dofs` [D] says which DOF move. Options are copied. The likelihood outlives the filter; the body is its body.
+  SamplingFilter(const SamplingOptions& options, const SilhouetteLikelihood& likelihood, std::vector<bool> free_dofs,
                  uint64_t seed);
 
   // Particles scattered about a pose [D] by the motion model's noise of a few frames.
@@ -52,8 +52,9 @@ class SamplingFilter {
   std::vector<int> held_columns() const { return columns_where(false); }
   void hold(StateBatch& states, std::span<const double> held) const;
   void make_filter(StateBatch states);
+  [[nodiscard]] const Skeleton& skeleton() const { return likelihood_.body().skeleton; }
 
-  TrackerOptions options_;
+  SamplingOptions options_;
   const SilhouetteLikelihood& likelihood_;
   std::vector<bool> free_dofs_;
   uint64_t seed_;

@@ -24,15 +24,14 @@ namespace {
 // and reports.
 class ClipTracker {
  public:
-  // `options` are resolved.
   ClipTracker(const TrackerOptions& options, std::span<const ClipInstant> clip, const ClipProgress& progress,
               const ClipResume& resume)
       : options_(options), clip_(clip, options.cameras.size()), progress_(progress), resume_(resume) {
     options_.check();
     for (const ClipInstant& instant : clip) seen_.push_back(any_is_usable(instant.observations));
-    const auto body = level_of_detail(options_.body, *options_.lod_vertices);
+    const auto body = level_of_detail(options_.body, options_.lod_vertices);
     likelihood_ = std::make_unique<const CoverageLikelihood>(body, options_.cameras);
-    plausibility_ = std::make_unique<const Plausibility>(body, *options_.floor);
+    plausibility_ = std::make_unique<const Plausibility>(body, options_.has_floor());
   }
 
   std::vector<StepReport> run() {
@@ -119,8 +118,7 @@ class ClipTracker {
 
 std::vector<StepReport> track_clip(const TrackerOptions& options, std::span<const ClipInstant> clip,
                                    const ClipProgress& progress, const ClipResume& resume) {
-  const TrackerOptions resolved = options.resolved();
-  if (*resolved.smooth && !clip.empty()) return ClipTracker(resolved, clip, progress, resume).run();
+  if (options.smooths() && !clip.empty()) return ClipTracker(options, clip, progress, resume).run();
   Tracker tracker(options);
   std::vector<StepReport> reports;
   if (!resume.state.empty()) {

@@ -9,6 +9,7 @@
 #include "silpose/track/keypoint_sides.h"
 #include "silpose/track/keypoints_for_test.h"
 #include "silpose/track/smoother.h"
+#include "silpose/track/tracker_presets.h"
 
 namespace silpose {
 namespace {
@@ -36,10 +37,9 @@ class ClipTest : public ::testing::Test {
     return instants;
   }
   TrackerOptions accurate() const {
-    TrackerOptions options;
+    TrackerOptions options = accurate_preset();
     options.body = body_;
     options.cameras = {camera_};
-    options.preset = "accurate";
     options.initial_pose = truth(0);
     return options;
   }
@@ -150,7 +150,7 @@ TEST_F(ClipTest, GoesOnFromWhereItWasStoppedBitForBit) {
   const auto instants = clip(6, 3, 4);
   for (const bool smooth : {true, false}) {
     TrackerOptions options = accurate();
-    options.smooth = smooth;
+    options.fitted()->smooth = smooth;
     const std::vector<StepReport> whole = track_clip(options, instants);
     ASSERT_EQ(whole.size(), 6u);
     for (const int stop : smooth ? std::vector<int>{1, 3, 8, 12, 17, 19} : std::vector<int>{1, 4}) {
@@ -205,10 +205,10 @@ class ExchangedClipTest : public ClipTest {
   TrackerOptions by_keypoints(bool smooth) const {
     TrackerOptions options = accurate();
     options.initial_pose.reset();
-    options.smooth = smooth;
+    options.fitted()->smooth = smooth;
     options.evidence = EvidenceKind::kBoth;
     options.landmarks = true;
-    options.num_hypotheses = 2;
+    options.fitted()->num_hypotheses = 2;
     return options;
   }
 

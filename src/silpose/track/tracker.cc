@@ -47,20 +47,20 @@ constexpr double kFacingKnown_s = 3;  // [guess] after the last keypoints
 }  // namespace
 
 struct Tracker::Impl {
-  explicit Impl(const TrackerOptions& given) : options(given.resolved()), sides(given.cameras.size()) {
+  explicit Impl(const TrackerOptions& given) : options(given), sides(given.cameras.size()) {
     options.check();
-    const auto fine = level_of_detail(options.body, *options.lod_vertices);
+    const auto fine = level_of_detail(options.body, options.lod_vertices);
     likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
-    likelihoods.plausibility = std::make_shared<const Plausibility>(fine, *options.floor);
+    likelihoods.plausibility = std::make_shared<const Plausibility>(fine, options.has_floor());
     const auto coarse = level_of_detail(options.body, kRankingLevel);
     for (const PinholeCamera& camera : options.cameras) {
       seen_by.emplace_back(options.body, camera);
       expected_by.emplace_back(coarse, camera);
-      if (!options.num_hypotheses) {
+      if (options.sampling() != nullptr) {
         likelihoods.renderers.push_back(std::make_shared<const BatchRenderer>(fine, camera));
       }
     }
-    if (options.num_hypotheses) {
+    if (options.fitted() != nullptr) {
       likelihoods.coarse = std::make_shared<const CoverageLikelihood>(coarse, options.cameras, kRankingRows);
     }
     filter = make_pose_filter(options, likelihoods);
@@ -159,7 +159,7 @@ struct Tracker::Impl {
 
   // The weights of hypotheses that face away from the estimate, and of those whose feet are exchanged against its own.
   void name_ambiguities(StepReport& report) const {
-    if (!options.num_hypotheses) return;
+    if (options.fitted() == nullptr) return;
     const std::optional<int> right = options.body->skeleton.find_joint("right_foot"),
                              left = options.body->skeleton.find_joint("left_foot");
     if (!right || !left) return;
@@ -209,7 +209,7 @@ struct Tracker::Impl {
     const double share = std::min(dt_s / kRecent_s, 1.0);
     recent_deviation += share * (std::abs(lost) - recent_deviation);
     recent_accuracy -= share * lost;
-    if (!options.num_hypotheses || report.visual_accuracy >= kGoodAccuracy ||
+    if (options.fitted() == nullptr || report.visual_accuracy >= kGoodAccuracy ||
         since_reinitialised_s < reinitialise_interval_s)
       return;
     const Stopwatch stopwatch;
@@ -299,7 +299,7 @@ std::vector<Mask> Tracker::expected(double dt_s) const {
   if (!t.started || t.last_seen_ns != t.last_time_ns) return {};
   std::vector<double> pose = t.last_pose;
   const StateBatch& states = t.filter->particles().states;
-  if (t.options.num_hypotheses) {
+  if (t.options.fitted() != nullptr) {
     const auto velocity = states.row(0).tail(std::ssize(pose));  // of the estimate, which is the best hypothesis
     for (size_t d = 0; d < pose.size(); ++d) pose[d] += dt_s * velocity[static_cast<Eigen::Index>(d)];
     t.options.body->skeleton.clamp(pose);

@@ -1,10 +1,9 @@
 // Tracker: the method. One step per frame: predict, fit or sample, weigh by silhouettes and keypoints,
 // estimate. No I/O.
-// Presets: `default`, a mixture of four hypotheses, each fitted to the silhouettes and predicted at constant velocity
-// (mixture_filter.h: bell1993, sminchisescu2003); `accurate`, the same with eight hypotheses on the whole mesh, which
-// track_clip() also smooths over the clip; `thesis`, two plain particle filters for root and pose (cormier2019
-// sect. 2.4; martinez2008). With num_particles or num_layers, `default` and `accurate` are instead one sampling filter
-// over root and pose together, plain or annealed (deutscher2005).
+// Filters: a mixture of hypotheses, each fitted to the silhouettes and predicted at constant velocity
+// (mixture_filter.h: bell1993, sminchisescu2003), which track_clip() can smooth over the clip; one particle filter over
+// root and pose together, plain or annealed (deutscher2005); two plain ones for root and pose (cormier2019 sect. 2.4;
+// martinez2008). tracker_presets.h has a set of options for each.
 // Threads: one thread steps a tracker; a step itself uses all cores and gives the same result on any number.
 #pragma once
 
@@ -37,7 +36,7 @@ class Tracker {
   // and while it coasts.
   [[nodiscard]] std::vector<Mask> expected(double dt_s) const;
 
-  [[nodiscard]] const TrackerOptions& options() const;  // with unset values filled in
+  [[nodiscard]] const TrackerOptions& options() const;
   // The current particles [N, D' >= D] and their log weights [N]. Those of fitted hypotheses are poses, then velocities
   // per second: D' = 2 D.
   [[nodiscard]] const StateBatch& particles() const;

@@ -3,95 +3,97 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
-#include "silpose/body/levels.h"
 #include "silpose/filter/resampling.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/motion/motion_model.h"
 #include "silpose/track/landmark_proposal.h"
 
 namespace silpose {
+namespace {
 
-TrackerOptions TrackerOptions::resolved() const {
-  const bool thesis = preset == "thesis";
-  const bool accurate = preset == "accurate";
-  TrackerOptions all = *this;
-  if (!thesis && !num_particles && !num_layers) {
-    if (!all.num_hypotheses) all.num_hypotheses = accurate ? 8 : 4;
-    if (!all.smooth) all.smooth = accurate;
-    if (!all.floor) all.floor = true;
-    if (!all.lod_vertices) all.lod_vertices = accurate ? 0 : kTrackingLevel;
-    return all;
-  }
-  if (!all.num_layers) all.num_layers = thesis || all.num_particles ? 1 : 10;
-  if (!all.num_particles) all.num_particles = *all.num_layers == 1 ? 1000 : 500;
-  if (!all.motion) all.motion = "diffusion";
-  // Layers add noise again and again: what a plain filter needs once would blur them.
-  if (!all.sigma_deg) all.sigma_deg = *all.num_layers == 1 ? 4 : 2;
-  if (!all.resampling) all.resampling = thesis ? "comb" : "systematic";
-  if (!all.regenerate) all.regenerate = thesis ? 0.2 : 0.0;
-  if (!all.regenerate_from) all.regenerate_from = "random";
-  if (!all.metric) all.metric = "pixel-count";
-  if (!all.sharpness) all.sharpness = 100;
-  if (!all.estimate) all.estimate = Estimate::kMean;
-  if (!all.smooth) all.smooth = false;
-  if (!all.floor) all.floor = false;
-  if (!all.lod_vertices) all.lod_vertices = kSamplingLevel;
-  return all;
+constexpr int kFewestVertices = 100;
+
+void check_filter(const FittedOptions& fitted) { fitted_option_table().check(fitted); }
+
+void check_filter(const SamplingOptions& sampling) {
+  sampling_option_table().check(sampling);
+  check(!sampling.separate_root || sampling.num_layers == 1, "layers: {}, but the thesis' two filters are plain: 1",
+        sampling.num_layers);
+  check(
+      sampling.regenerate_from == RegenerateFrom::kRandom || (sampling.regenerate > 0 && sampling.resampling == "comb"),
+      "regenerate-from: network, but nothing is regenerated: it needs resampling comb and regenerate above 0");
+}
+
+}  // namespace
+
+const OptionTable<TrackerOptions>& tracker_option_table() {
+  static const OptionTable<TrackerOptions> kTable = {
+      "Every tracker",
+      {{"vertices", &TrackerOptions::lod_vertices, between(0, 1'000'000),
+        "About how many of the body's vertices are compared; 0: all. Passes before the smoothing use 2500 at most"},
+       {"evidence",
+        &TrackerOptions::evidence,
+        {{"silhouette", EvidenceKind::kSilhouette},
+         {"landmarks", EvidenceKind::kKeypoints},
+         {"both", EvidenceKind::kBoth}},
+        "What poses are compared by: the silhouette; landmarks, which are the body's keypoints found by a network; or "
+        "both, where there are some"}}};
+  return kTable;
+}
+
+const OptionTable<FittedOptions>& fitted_option_table() {
+  static const OptionTable<FittedOptions> kTable = {
+      "Fitted hypotheses (presets default and accurate)",
+      {{"hypotheses", &FittedOptions::num_hypotheses, between(1, 64), "Hypotheses (possible poses) kept at a time"},
+       {"smooth", &FittedOptions::smooth, "Of a recorded clip: track in both directions, then fit all frames at once"},
+       {"floor", &FittedOptions::floor,
+        "The floor of a calibrated camera is y = 0: nothing lies below; with smoothing, what rests on it does not "
+        "slide"}}};
+  return kTable;
+}
+
+const OptionTable<SamplingOptions>& sampling_option_table() {
+  static const OptionTable<SamplingOptions> kTable = {
+      "Sampling filters (preset thesis, or with particles or layers)",
+      {{"particles", &SamplingOptions::num_particles, between(2, 1'000'000), "Particles per layer"},
+       {"layers", &SamplingOptions::num_layers, between(1, 200), "Annealing layers; 1 is a plain filter"},
+       {"motion", &SamplingOptions::motion, words_from(motion_model_names()), "How particles move between frames"},
+       {"sigma-deg", &SamplingOptions::sigma_deg, between(1e-3, 90), "Noise of a typical joint angle in 1/30 s"},
+       {"resampling", &SamplingOptions::resampling, words_from(resampler_names()), "Which particles survive"},
+       {"resample-below", &SamplingOptions::resample_below, between(0, 1),
+        "Resample only when n_eff is below this fraction of the particles; 1: always"},
+       {"regenerate", &SamplingOptions::regenerate, between(0, 0.99),
+        "Fraction of the particles that the comb regenerates"},
+       {"regenerate-from",
+        &SamplingOptions::regenerate_from,
+        {{"random", RegenerateFrom::kRandom}, {"network", RegenerateFrom::kNetwork}},
+        "Where regenerated particles come from: random (around the estimate) or network (around the poses that it "
+        "recognises)"},
+       {"sharpness", &SamplingOptions::sharpness, between(1e-3, 1e6), "How strongly better silhouettes are preferred"},
+       {"metric",
+        &SamplingOptions::metric,
+        {{"pixel-count", Metric::kPixelCount}, {"coverage", Metric::kCoverage}},
+        "How silhouettes are compared: pixel-count (pixels that differ) or coverage (how much of each; finer, slower)"},
+       {"root", &SamplingOptions::root_fixed, {{"tracked", false}, {"fixed", true}}, "Whether the root moves"},
+       {"estimate",
+        &SamplingOptions::estimate,
+        {{"mean", Estimate::kMean}, {"mode", Estimate::kMode}, {"cluster", Estimate::kCluster}},
+        "Which pose is reported"}}};
+  return kTable;
 }
 
 void TrackerOptions::check() const {
-  const auto require = [](bool condition, const std::string& message) { silpose::check(condition, "{}", message); };
-  require(body != nullptr, "no body");
-  require(!cameras.empty(), "no camera");
-  require(preset == "default" || preset == "accurate" || preset == "thesis",
-          fmt::format("preset '{}' is not default, accurate or thesis", preset));
-  const TrackerOptions all = resolved();
-  if (all.num_hypotheses) {
-    require(!all.num_particles && !all.num_layers && preset != "thesis",
-            "hypotheses are fitted: they go neither with particles and layers nor with preset thesis");
-    require(*all.num_hypotheses >= 1 && *all.num_hypotheses <= 64,
-            fmt::format("{} hypotheses, not within 1..64", *all.num_hypotheses));
-    require(!all.motion && !all.sigma_deg && !all.resampling && !all.regenerate && !all.regenerate_from &&
-                !all.metric && !all.sharpness,
-            "motion, sigma, resampling, regenerate, regenerate from, metric and sharpness are of the sampling filters: "
-            "give "
-            "particles or "
-            "layers");
-    require(!all.estimate && !root_fixed && resample_below == 1,
-            "estimate, a fixed root and resample below are of the sampling filters: give particles or layers");
-  } else {
-    require(*all.num_particles >= 2 && *all.num_particles <= 1'000'000,
-            fmt::format("{} particles, not within 2..1000000", *all.num_particles));
-    require(*all.num_layers >= 1 && *all.num_layers <= 200,
-            fmt::format("{} layers, not within 1..200", *all.num_layers));
-    require(preset != "thesis" || *all.num_layers == 1, "preset thesis has one layer");
-    require(std::isfinite(*all.sigma_deg) && *all.sigma_deg > 0 && *all.sigma_deg <= 90,
-            fmt::format("sigma {} degrees, not within (0, 90]", *all.sigma_deg));
-    require(*all.regenerate_from == "random" || *all.regenerate_from == "network",
-            fmt::format("regenerate from '{}' is not random or network", *all.regenerate_from));
-    require(
-        *all.regenerate_from == "random" || (*all.regenerate > 0 && *all.resampling == "comb"),
-        "regenerate from network: nothing is regenerated; give --resampling comb and --regenerate, or preset thesis");
-    require(*all.metric == "pixel-count" || *all.metric == "coverage",
-            fmt::format("metric '{}' is not pixel-count or coverage", *all.metric));
-    require(std::isfinite(*all.sharpness) && *all.sharpness > 0,
-            fmt::format("sharpness {} is not a positive number", *all.sharpness));
-    require(!*all.smooth && !*all.floor,
-            "smooth and floor are of the fitted mixture: they go with neither particles nor preset thesis");
-    const auto resampler = make_resampler(*all.resampling, *all.regenerate);
-    require(resampler.ok(), resampler.ok() ? "" : resampler.error().message);
-    const auto model = make_motion_model(*all.motion, body->skeleton, {});
-    require(model.ok(), model.ok() ? "" : model.error().message);
-  }
-  require(std::isfinite(resample_below) && resample_below >= 0 && resample_below <= 1,
-          fmt::format("resample below {}, not within 0..1", resample_below));
-  require(*all.lod_vertices == 0 || *all.lod_vertices >= 100,
-          fmt::format("{} vertices, not at least 100", *all.lod_vertices));
-  require(std::isfinite(size_deviation) && size_deviation >= 0 && size_deviation < 1,
-          fmt::format("size deviation {}, not within [0, 1)", size_deviation));
+  silpose::check(body != nullptr, "no body");
+  silpose::check(!cameras.empty(), "no camera");
+  tracker_option_table().check(*this);
+  std::visit([](const auto& of_filter) { check_filter(of_filter); }, filter);
+  silpose::check(lod_vertices == 0 || lod_vertices >= kFewestVertices, "vertices: {} is neither 0 nor at least {}",
+                 lod_vertices, kFewestVertices);
+  silpose::check(std::isfinite(size_deviation) && size_deviation >= 0 && size_deviation < 1,
+                 "size deviation: {} is not a number from 0 to below 1", size_deviation);
   const auto num_dofs = static_cast<size_t>(body->skeleton.num_dofs());
-  require(!initial_pose || initial_pose->size() == num_dofs,
-          fmt::format("initial pose of {} numbers for {} DOF", initial_pose ? initial_pose->size() : 0, num_dofs));
+  silpose::check(!initial_pose || initial_pose->size() == num_dofs, "initial pose: {} numbers for {} DOF",
+                 initial_pose ? initial_pose->size() : 0, num_dofs);
 }
 
 EvidenceKind start_evidence(const TrackerOptions& options) {

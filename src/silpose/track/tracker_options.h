@@ -1,5 +1,6 @@
-// TrackerOptions: all options of a tracker, and the presets.
-// Threads: a value.
+// TrackerOptions: all options of a tracker: what every tracker has, and those of its filter, which is either a mixture
+// of fitted hypotheses or one that samples. Sets of values to start from: tracker_presets.h.
+// Threads: values; the tables are constant.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +8,51 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "silpose/base/option_table.h"
 #include "silpose/body/body_model.h"
+#include "silpose/body/levels.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/likelihood/coverage_likelihood.h"
+#include "silpose/likelihood/silhouette_likelihood.h"
 #include "silpose/motion/proposal.h"
 
 namespace silpose {
 
 enum class Estimate { kMean, kMode, kCluster };
+
+// Where regenerated particles come from: around the estimate, or around the poses that a network recognises.
+enum class RegenerateFrom { kRandom, kNetwork };
+
+// The mixture of fitted hypotheses (mixture_filter.h).
+struct FittedOptions {
+  int num_hypotheses = 4;
+  bool smooth = false;  // a batch fit over the clip afterwards; only track_clip() does it
+  bool floor = true;    // nothing lies below y = 0; with smoothing, what rests on it does not slide
+  bool operator==(const FittedOptions&) const = default;
+};
+
+// A particle filter, plain or annealed. The defaults are those of a plain one.
+struct SamplingOptions {
+  int num_particles = 1000;  // per layer
+  int num_layers = 1;        // of annealing; 1: plain
+  // Two plain filters in place of one (cormier2019 sect. 2.4): the pose on cropped silhouettes, then the root on whole
+  // images.
+  bool separate_root = false;
+  std::string motion = "diffusion";       // motion/motion_model.h
+  double sigma_deg = 4;                   // of a typical rotational DOF per 1/30 s; the others scale with it
+  std::string resampling = "systematic";  // filter/resampling.h
+  double resample_below = 1;              // of n_eff / N; 1: every step
+  double regenerate = 0;                  // fraction of the particles that `comb` regenerates
+  RegenerateFrom regenerate_from = RegenerateFrom::kRandom;
+  Metric metric = Metric::kPixelCount;
+  double sharpness = 100;
+  Estimate estimate = Estimate::kMean;
+  bool root_fixed = false;  // the six root DOF stay where they started
+  bool operator==(const SamplingOptions&) const = default;
+};
 
 struct TrackerOptions {
   std::shared_ptr<const BodyModel> body;  // full mesh; the tracker makes its own level of detail
@@ -24,39 +60,33 @@ struct TrackerOptions {
   // How far the subject's size may be from the body's, one standard deviation, relative. One camera cannot separate
   // size from distance, so it is added to the spread; several can.
   double size_deviation = 0;
-  std::string preset = "default";  // "default", "accurate" or "thesis"; fills what is left unset below
-  // The fitted mixture; unset where a sampling filter is requested.
-  std::optional<int> num_hypotheses;
-  std::optional<bool> smooth;  // a batch fit over the clip afterwards; only track_clip() does it
-  std::optional<bool> floor;   // nothing lies below y = 0; with smoothing, what rests on it does not slide
-  // The sampling filters: preset thesis, or any other with one of the first two set.
-  std::optional<int> num_particles;            // per layer; set alone it makes the filter plain
-  std::optional<int> num_layers;               // 1: plain
-  std::optional<std::string> motion;           // motion/motion_model.h
-  std::optional<double> sigma_deg;             // of a typical rotational DOF per 1/30 s; the others scale with it
-  std::optional<std::string> resampling;       // filter/resampling.h
-  double resample_below = 1;                   // of n_eff / N; 1: every step
-  std::optional<double> regenerate;            // fraction of the particles that the comb regenerates
-  std::optional<std::string> regenerate_from;  // "random": about the estimate; "network": about the poses it recognises
-  std::optional<std::string> metric;           // "pixel-count" or "coverage" (likelihood/silhouette_likelihood.h)
-  std::optional<double> sharpness;
-  std::optional<Estimate> estimate;
-  bool root_fixed = false;          // the six root DOF stay where they started
-  std::optional<int> lod_vertices;  // of the mesh that is compared, smoothed clips: in the end; 0: the body's own
+  std::variant<FittedOptions, SamplingOptions> filter;
+  int lod_vertices = kTrackingLevel;  // of the mesh that is compared, smoothed clips: in the end; 0: the body's own
+  // What poses are compared by during tracking; also whether starts use silhouettes. Where there are no keypoints,
+  // kBoth is the same as kSilhouette.
+  EvidenceKind evidence = EvidenceKind::kBoth;
+  bool landmarks = false;  // starts use keypoints, where there are any
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
-  // The evidence that poses are compared by during tracking; also whether starts use keypoints, where there are any.
-  EvidenceKind evidence = EvidenceKind::kSilhouette;
-  bool landmarks = false;
   // Candidates for the start, and for re-initialising the fitted mixture; absent: the common poses.
   std::shared_ptr<const Proposal> proposal;
 
+  // Null where the filter is of the other kind.
+  [[nodiscard]] const FittedOptions* fitted() const { return std::get_if<FittedOptions>(&filter); }
+  [[nodiscard]] FittedOptions* fitted() { return std::get_if<FittedOptions>(&filter); }
+  [[nodiscard]] const SamplingOptions* sampling() const { return std::get_if<SamplingOptions>(&filter); }
+  [[nodiscard]] SamplingOptions* sampling() { return std::get_if<SamplingOptions>(&filter); }
+  [[nodiscard]] bool smooths() const { return fitted() != nullptr && fitted()->smooth; }
+  [[nodiscard]] bool has_floor() const { return fitted() != nullptr && fitted()->floor; }
+
   // Errors: throws std::invalid_argument that names the option and its value.
   void check() const;
-
-  // The same with everything unset filled in from the preset.
-  [[nodiscard]] TrackerOptions resolved() const;
 };
+
+// The options that have a name: of every tracker, and of each filter.
+const OptionTable<TrackerOptions>& tracker_option_table();
+const OptionTable<FittedOptions>& fitted_option_table();
+const OptionTable<SamplingOptions>& sampling_option_table();
 
 // What starts are compared by.
 EvidenceKind start_evidence(const TrackerOptions& options);
