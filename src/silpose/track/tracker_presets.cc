@@ -29,7 +29,7 @@ std::optional<std::string> first_given(const OptionTable<S>& table, const GivenO
     const auto value = given.find(option.info.name);
     if (value == given.end() || option.info.off == value->second) continue;
     const bool has_words = option.info.off && option.info.kind == OptionKind::kWord;
-    return option.info.name + (has_words ? " " + text_of(value->second) : "");
+    return has_words ? fmt::format("{} {}", option.info.name, text_of(value->second)) : option.info.name;
   }
   return std::nullopt;
 }
