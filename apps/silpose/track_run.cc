@@ -33,7 +33,7 @@ class TrackRun {
         resume_(std::move(resume)),
         board_(std::make_shared<sadb::MemoryStore>()),
         // The masks are in files; kept in memory too, they would bound how long a clip may be.
-        recorder_(board_, writer.body().skeleton.name(), names_of(writer.cameras()), {.masks = false}) {}
+        recorder_(board_, writer.body().skeleton, names_of(writer.cameras()), {.masks = false}) {}
 
   Result<Tracked> run() {
     tracked_.used = tracker_options_.resolved();
