@@ -2,7 +2,7 @@
 # refused here, at configure time; tests/layering checks the #include lines, which CMake cannot see.
 set(SILPOSE_FLOORS
   base=0
-  geometry=1 image=1 filter=1
+  geometry=1 image=1 filter=1 files=1
   video=2 body=2 shape=2 calibrate=2 board=2
   segment=3 render=3 motion=3 exchange=3 store=3
   likelihood=4 synth=4

@@ -2,6 +2,11 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "silpose/base/check.h"
 
 namespace sadb {
 namespace {
@@ -34,7 +39,26 @@ Rigid3 mix(const Rigid3& a, const Rigid3& b, double share) {
   return {from.slerp(share, to).toRotationMatrix(), a.translation + share * (b.translation - a.translation)};
 }
 
-Result<Value> mix(const Value& a, const Value& b, double share) {
+Result<Value> mix(const Pose& a, const Pose& b, double share, const std::optional<PoseSchema>& schema) {
+  if (a.skeleton != b.skeleton || a.values.size() != b.values.size()) {
+    return error("poses of skeletons '{}' ({} values) and '{}' ({} values) cannot be interpolated", a.skeleton,
+                 a.values.size(), b.skeleton, b.values.size());
+  }
+  Pose result{a.skeleton, mix(a.values, b.values, share)};
+  if (!schema) return Value(std::move(result));
+  silpose::check(schema->dofs.size() == a.values.size(), "read_at: {} values by a schema of {}", a.values.size(),
+                 schema->dofs.size());
+  for (size_t d = 0; d < result.values.size(); ++d) {
+    const double period = schema->dofs[d].period;
+    const double change = b.values[d] - a.values[d];
+    if (period > 0 && std::abs(change) > period / 2) {
+      result.values[d] = a.values[d] + share * std::remainder(change, period);
+    }
+  }
+  return Value(std::move(result));
+}
+
+Result<Value> mix(const Value& a, const Value& b, double share, const Schema& schema) {
   switch (type_of(a)) {
     case Type::kScalar:
       return Value(mix(std::get<double>(a), std::get<double>(b), share));
@@ -48,15 +72,8 @@ Result<Value> mix(const Value& a, const Value& b, double share) {
     }
     case Type::kTransform:
       return Value(mix(std::get<Rigid3>(a), std::get<Rigid3>(b), share));
-    case Type::kPose: {
-      const Pose& from = std::get<Pose>(a);
-      const Pose& to = std::get<Pose>(b);
-      if (from.skeleton != to.skeleton || from.values.size() != to.values.size()) {
-        return error("poses of skeletons '{}' ({} values) and '{}' ({} values) cannot be interpolated", from.skeleton,
-                     from.values.size(), to.skeleton, to.values.size());
-      }
-      return Value(Pose{from.skeleton, mix(from.values, to.values, share)});
-    }
+    case Type::kPose:
+      return mix(std::get<Pose>(a), std::get<Pose>(b), share, schema.pose);
     case Type::kText:
     case Type::kJson:
     case Type::kImage:
@@ -66,21 +83,22 @@ Result<Value> mix(const Value& a, const Value& b, double share) {
   return error("type {} cannot be interpolated", type_name(type_of(a)));
 }
 
-Result<Reading> read_linear(const Entry& before, const Entry& after, int64_t time_ns) {
+Result<Reading> read_linear(const Entry& before, const Entry& after, int64_t time_ns, const Schema& schema) {
   if (before.time_ns == time_ns) return recorded(before);
   if (type_of(before.value) != type_of(after.value)) {
     return error("{} and {} cannot be interpolated", type_name(type_of(before.value)), type_name(type_of(after.value)));
   }
   const double share = static_cast<double>(nanoseconds_between(before.time_ns, time_ns)) /
                        static_cast<double>(nanoseconds_between(before.time_ns, after.time_ns));
-  Result<Value> value = mix(before.value, after.value, share);
+  Result<Value> value = mix(before.value, after.value, share, schema);
   if (!value) return value.failure();
   return Reading{*std::move(value), time_ns, How::kInterpolated, before.time_ns, after.time_ns};
 }
 
 }  // namespace
 
-Result<Reading> read_at(const Neighbours& neighbours, int64_t time_ns, Method method) {
+Result<Reading> read_at(const Neighbours& neighbours, int64_t time_ns, TimeAccess access, const Schema& schema) {
+  const Method method = access.method;
   const Entry* const before = neighbours.at_or_before;
   const Entry* const after = neighbours.at_or_after;
   if (method == Method::kLatest) {
@@ -110,7 +128,7 @@ Result<Reading> read_at(const Neighbours& neighbours, int64_t time_ns, Method me
       return reading;
     }
     default:
-      return read_linear(*before, *after, time_ns);
+      return read_linear(*before, *after, time_ns, schema);
   }
 }
 

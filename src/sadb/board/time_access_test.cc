@@ -21,7 +21,7 @@ Rigid3 turn(double degrees, double x) {
 }
 
 Result<Reading> between(const Entry& before, const Entry& after, int64_t time_ns, Method method) {
-  return read_at({&before, &after, &after}, time_ns, method);
+  return read_at({&before, &after, &after}, time_ns, {method}, {type_of(before.value)});
 }
 
 TEST(ReadAt, InterpolatesNumbersVectorsAndPoses) {
@@ -60,9 +60,27 @@ TEST(ReadAt, SaysWhatCannotBeInterpolated) {
 
 TEST(ReadAt, LinearAtAnEntryIsTheEntryOfAnyType) {
   const Entry text{5, std::string("now")};
-  const auto reading = read_at({&text, &text, &text}, 5, Method::kLinear);
+  const auto reading = read_at({&text, &text, &text}, 5, {Method::kLinear}, {Type::kText});
   EXPECT_EQ(std::get<std::string>(reading->value), "now");
   EXPECT_EQ(reading->how, How::kRecorded);
+}
+
+TEST(ReadAt, InterpolatesPeriodicValuesOnTheShortArc) {
+  const Schema schema{Type::kPose, PoseSchema{"wheel", {{"turn", PoseDof::Kind::kRotation, "deg", 360}}}};
+  const auto turn_at = [&](double before, double after, int64_t time_ns) {
+    const Entry first{0, Pose{"wheel", {before}}}, second{10, Pose{"wheel", {after}}};
+    return std::get<Pose>(read_at({&first, &second, &second}, time_ns, {Method::kLinear}, schema)->value).values[0];
+  };
+  EXPECT_NEAR(turn_at(179, -179, 5), 180, 1e-12);
+  EXPECT_NEAR(turn_at(-179, 179, 5), -180, 1e-12);
+  EXPECT_NEAR(turn_at(350, 20, 2), 356, 1e-12);
+  EXPECT_NEAR(turn_at(10, 730, 5), 10, 1e-12);  // two whole turns are none
+  EXPECT_EQ(turn_at(10, 50, 5), 30);
+  EXPECT_EQ(turn_at(0, 180, 5), 90);  // both ways are equally short: the way of the numbers
+  EXPECT_EQ(turn_at(0, -180, 5), -90);
+  EXPECT_EQ(turn_at(90, -90, 5), 0);
+  const Entry wide{0, Pose{"wheel", {1, 2}}}, wider{10, Pose{"wheel", {3, 4}}};
+  EXPECT_THROW((void)read_at({&wide, &wider, &wider}, 5, {Method::kLinear}, schema), std::invalid_argument);
 }
 
 TEST(ReadAt, SurvivesTheEndsOfTime) {
@@ -87,6 +105,15 @@ TEST(TypeNames, FollowTheAlternatives) {
   EXPECT_EQ(type_name(type_of(Rigid3{})), "transform");
   EXPECT_EQ(type_name(type_of(Pose{})), "pose");
   EXPECT_EQ(type_name(type_of(Mask())), "mask");
+}
+
+TEST(SharedPayload, IsOneObjectInAllCopies) {
+  const Shared<Mask> mask = silpose::mask_from_text("#.");
+  const Value value = mask, copy = value;
+  EXPECT_EQ(&*std::get<Shared<Mask>>(copy), &*mask);
+  EXPECT_EQ(mask, Shared<Mask>(silpose::mask_from_text("#.")));
+  EXPECT_FALSE(mask == Shared<Mask>(silpose::mask_from_text(".#")));
+  EXPECT_EQ(Shared<Mask>()->width(), 0);
 }
 
 TEST(CheckPath, TakesSegmentsAndNothingElse) {

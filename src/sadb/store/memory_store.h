@@ -1,5 +1,6 @@
 // MemoryStore: a blackboard in this process's memory, lost when it ends.
-// Locks are held to find or place an entry, never while a value is copied; a value is shared once it is placed.
+// One lock guards everything. It is held to find, place and remove entries; values are made before it is taken, and
+// copied, computed with and freed after it is released.
 // Threads: as Blackboard.
 #pragma once
 
@@ -16,11 +17,18 @@ class MemoryStore final : public Blackboard {
   MemoryStore();
   ~MemoryStore() override;
 
-  silpose::Result<void> put(const std::string& path, int64_t time_ns, Value value) override;
-  silpose::Result<Reading> get(const std::string& path, int64_t time_ns, Method method) const override;
-  silpose::Result<std::vector<Entry>> range(const std::string& path, int64_t from_ns, int64_t to_ns) const override;
-  [[nodiscard]] std::vector<PathInfo> list(const std::string& prefix) const override;
-  [[nodiscard]] int64_t count(const std::string& path) const override;
+  silpose::Result<void> declare(const std::string& path, const Schema& schema) override;
+  silpose::Result<Schema> schema(const std::string& path) const override;
+  silpose::Result<void> put_batch(std::vector<PathEntry> batch) override;
+  silpose::Result<Reading> get(const std::string& path, int64_t time_ns, TimeAccess access) const override;
+  silpose::Result<std::vector<silpose::Result<Reading>>> snapshot(int64_t time_ns,
+                                                                  const std::vector<Lookup>& lookups) const override;
+  silpose::Result<std::unique_ptr<Cursor>> range(const std::string& path, const Query& query) const override;
+  silpose::Result<std::unique_ptr<Subscription>> watch(const std::string& prefix, const WatchOptions& options) override;
+  silpose::Result<void> remove(const std::string& path) override;
+  silpose::Result<int64_t> remove_range(const std::string& path, int64_t from_ns, int64_t to_ns) override;
+  silpose::Result<std::vector<PathInfo>> list(const std::string& prefix) const override;
+  silpose::Result<int64_t> count(const std::string& path) const override;
 
  private:
   struct Impl;

@@ -29,8 +29,10 @@ std::optional<StepReport::State> state_of(std::string_view name) {
 template <class T>
 Result<std::map<int64_t, T>> read_path(const sadb::Blackboard& board, const std::string& path) {
   std::map<int64_t, T> values;
-  if (board.count(path) == 0) return values;
-  auto entries = board.range(path, std::numeric_limits<int64_t>::min(), std::numeric_limits<int64_t>::max());
+  const Result<int64_t> count = board.count(path);
+  if (!count) return count.failure();
+  if (*count == 0) return values;
+  auto entries = sadb::read_range(board, path);
   if (!entries) return entries.failure();
   for (sadb::Entry& entry : *entries) {
     T* const value = std::get_if<T>(&entry.value);
@@ -44,7 +46,9 @@ Result<std::map<int64_t, T>> read_path(const sadb::Blackboard& board, const std:
 Result<std::map<std::string, std::map<int64_t, double>>> read_trust(const sadb::Blackboard& board,
                                                                     const std::string& folder) {
   std::map<std::string, std::map<int64_t, double>> trust;
-  for (const sadb::PathInfo& info : board.list(folder)) {
+  const auto infos = board.list(folder);
+  if (!infos) return infos.failure();
+  for (const sadb::PathInfo& info : *infos) {
     auto values = read_path<double>(board, info.path);
     if (!values) return values.failure();
     trust[info.path.substr(folder.size() + 1)] = std::move(*values);
@@ -60,40 +64,58 @@ T take(std::map<int64_t, T>& values, int64_t time_ns) {
 
 }  // namespace
 
-TrackRecorder::TrackRecorder(std::shared_ptr<sadb::Blackboard> board, std::string skeleton,
+sadb::Schema pose_schema(const Skeleton& skeleton) {
+  using Kind = sadb::PoseDof::Kind;
+  sadb::PoseSchema pose{skeleton.name(), {}};
+  for (const Dof& dof : skeleton.dofs()) {
+    pose.dofs.push_back({.name = dof.name,
+                         .kind = dof.is_shape         ? Kind::kShape
+                                 : dof.is_translation ? Kind::kTranslation
+                                                      : Kind::kRotation,
+                         .unit = dof.is_translation ? "m" : "rad",
+                         .period = dof.is_periodic ? 2 * kPi : 0});
+  }
+  return {sadb::Type::kPose, std::move(pose)};
+}
+
+TrackRecorder::TrackRecorder(std::shared_ptr<sadb::Blackboard> board, const Skeleton& skeleton,
                              std::vector<std::string> camera_names, RecorderOptions options)
     : board_(std::move(board)),
-      skeleton_(std::move(skeleton)),
+      pose_(pose_schema(skeleton)),
       camera_names_(std::move(camera_names)),
       options_(std::move(options)) {
   check(board_ != nullptr, "TrackRecorder: no board");
 }
 
 Result<void> TrackRecorder::put(const StepReport& report) {
+  const auto path = [&](const std::string& name) { return options_.prefix + "/" + name; };
   check(report.trust.size() <= camera_names_.size() && report.observed.size() <= camera_names_.size(),
         "TrackRecorder: {} cameras in a report, {} names", report.trust.size(), camera_names_.size());
-  std::vector<std::pair<std::string, sadb::Value>> entries = {
-      {"frame", static_cast<double>(report.frame_idx)},
-      {"state", std::string(state_name(report.state))},
-      {"visual_accuracy", report.visual_accuracy},
-      {"effective_sample_size", report.effective_sample_size},
+  if (!is_declared_) {
+    for (const char* name : {"pose", "mode"}) {
+      if (Result<void> declared = board_->declare(path(name), pose_); !declared) return declared;
+    }
+    is_declared_ = true;
+  }
+  std::vector<sadb::PathEntry> step;
+  const auto add = [&](const std::string& name, sadb::Value value) {
+    step.push_back({path(name), report.time_ns, std::move(value)});
   };
+  add("frame", static_cast<double>(report.frame_idx));
+  add("state", std::string(state_name(report.state)));
+  add("visual_accuracy", report.visual_accuracy);
+  add("effective_sample_size", report.effective_sample_size);
   if (!report.pose.empty()) {
-    entries.emplace_back("pose", sadb::Pose{skeleton_, report.pose});
-    entries.emplace_back("mode", sadb::Pose{skeleton_, report.mode});
-    entries.emplace_back("spread", report.spread);
-    entries.emplace_back("landmark_spread", flattened(report.landmark_spread));
+    add("pose", sadb::Pose{pose_.pose->skeleton, report.pose});
+    add("mode", sadb::Pose{pose_.pose->skeleton, report.mode});
+    add("spread", report.spread);
+    add("landmark_spread", flattened(report.landmark_spread));
   }
-  for (size_t c = 0; c < report.trust.size(); ++c)
-    entries.emplace_back("trust/" + camera_names_[c], report.trust[c].overall);
+  for (size_t c = 0; c < report.trust.size(); ++c) add("trust/" + camera_names_[c], report.trust[c].overall);
   for (size_t c = 0; options_.masks && c < report.observed.size(); ++c) {
-    entries.emplace_back("observed/" + camera_names_[c], report.observed[c]);
+    add("observed/" + camera_names_[c], report.observed[c]);
   }
-  for (auto& [name, value] : entries) {
-    Result<void> put = board_->put(options_.prefix + "/" + name, report.time_ns, std::move(value));
-    if (!put) return put;
-  }
-  return {};
+  return board_->put_batch(std::move(step));
 }
 
 Result<TrackRecording> read_recording(const sadb::Blackboard& board, const std::string& prefix) {

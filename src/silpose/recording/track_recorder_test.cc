@@ -12,6 +12,14 @@ namespace {
 
 using testing::HasSubstr;
 
+// Moves and turns without end.
+Skeleton two_dofs() {
+  Joint root{.name = "root", .dof_indices = {0, 1}};
+  Dof move{.name = "root_tx", .is_translation = true, .lower = -1, .upper = 1};
+  Dof turn{.name = "root_ry", .is_periodic = true, .axis = Eigen::Vector3d::UnitY(), .lower = -kPi, .upper = kPi};
+  return Skeleton("human", {root}, {move, turn});
+}
+
 StepReport tracked(int64_t frame) {
   StepReport report;
   report.frame_idx = frame;
@@ -30,7 +38,7 @@ StepReport tracked(int64_t frame) {
 
 TEST(TrackRecorder, WhatGoesInComesBack) {
   const auto board = std::make_shared<sadb::MemoryStore>();
-  TrackRecorder recorder(board, "human", {"front"});
+  TrackRecorder recorder(board, two_dofs(), {"front"});
   StepReport waiting;
   waiting.frame_idx = 3;
   waiting.time_ns = 3 * 33'333'333;
@@ -61,14 +69,55 @@ TEST(TrackRecorder, WhatGoesInComesBack) {
 
 TEST(TrackRecorder, MasksAndTrustAreEntriesOfTheirCamera) {
   const auto board = std::make_shared<sadb::MemoryStore>();
-  ASSERT_TRUE(TrackRecorder(board, "human", {"front"}, {.prefix = "cell/1"}).put(tracked(4)));
-  const auto mask = board->get("cell/1/observed/front", 0, sadb::Method::kLatest).value();
-  EXPECT_EQ(text_from_mask(std::get<Mask>(mask.value)), text_from_mask(mask_from_text("#.\n.#")));
-  EXPECT_EQ(std::get<double>(board->get("cell/1/trust/front", 0, sadb::Method::kLatest).value().value), 0.5);
+  ASSERT_TRUE(TrackRecorder(board, two_dofs(), {"front"}, {.prefix = "cell/1"}).put(tracked(4)));
+  const auto mask = board->get("cell/1/observed/front", 0, {sadb::Method::kLatest}).value();
+  EXPECT_EQ(text_from_mask(*std::get<sadb::Shared<Mask>>(mask.value)), text_from_mask(mask_from_text("#.\n.#")));
+  EXPECT_EQ(std::get<double>(board->get("cell/1/trust/front", 0, {sadb::Method::kLatest}).value().value), 0.5);
 
   const auto lean = std::make_shared<sadb::MemoryStore>();
-  ASSERT_TRUE(TrackRecorder(lean, "human", {"front"}, {.masks = false}).put(tracked(4)));
-  EXPECT_EQ(lean->count("tracker/observed/front"), 0);
+  ASSERT_TRUE(TrackRecorder(lean, two_dofs(), {"front"}, {.masks = false}).put(tracked(4)));
+  EXPECT_EQ(lean->count("tracker/observed/front").value(), 0);
+}
+
+TEST(TrackRecorder, PosesHaveTheSchemaOfTheSkeleton) {
+  const auto board = std::make_shared<sadb::MemoryStore>();
+  TrackRecorder recorder(board, two_dofs(), {"front"});
+  ASSERT_TRUE(recorder.put(StepReport{}));  // waiting: declared, without entries
+  const sadb::Schema schema = board->schema("tracker/pose").value();
+  using Kind = sadb::PoseDof::Kind;
+  EXPECT_EQ(schema,
+            (sadb::Schema{sadb::Type::kPose, sadb::PoseSchema{"human",
+                                                              {{"root_tx", Kind::kTranslation, "m", 0},
+                                                               {"root_ry", Kind::kRotation, "rad", 2 * kPi}}}}));
+  EXPECT_EQ(board->schema("tracker/mode").value(), schema);
+
+  StepReport before = tracked(1), after = tracked(3);
+  before.pose = {0, to_radians(170)};
+  after.pose = {0.5, to_radians(-170)};
+  ASSERT_TRUE(recorder.put(before));
+  ASSERT_TRUE(recorder.put(after));
+  const auto between = board->get("tracker/pose", 2 * 33'333'333, {sadb::Method::kLinear}).value();
+  const std::vector<double> values = std::get<sadb::Pose>(between.value).values;
+  EXPECT_NEAR(values[0], 0.25, 1e-12);
+  EXPECT_NEAR(values[1], kPi, 1e-12);
+
+  sadb::PoseDof other{"root_tx"};
+  const auto taken = std::make_shared<sadb::MemoryStore>();
+  ASSERT_TRUE(taken->declare("tracker/pose", {sadb::Type::kPose, sadb::PoseSchema{"snake", {other}}}));
+  EXPECT_THAT(TrackRecorder(taken, two_dofs(), {}).put(StepReport{}).error().message,
+              HasSubstr("tracker/pose: has another schema"));
+}
+
+TEST(TrackRecorder, AStepIsOneBatch) {
+  const auto board = std::make_shared<sadb::MemoryStore>();
+  const auto subscription = board->watch("tracker", {.capacity = 1}).value();  // keeps the last put, whole
+  TrackRecorder recorder(board, two_dofs(), {"front"});
+  ASSERT_TRUE(recorder.put(StepReport{}));
+  ASSERT_TRUE(recorder.put(tracked(4)));
+  const sadb::Update update = subscription->next(std::chrono::nanoseconds(0)).value();
+  EXPECT_EQ(update.num_dropped, 4);
+  EXPECT_EQ(update.entries.size(), 10u);
+  for (const sadb::PathEntry& entry : update.entries) EXPECT_EQ(entry.time_ns, 4 * 33'333'333) << entry.path;
 }
 
 TEST(TrackRecorder, NothingOrSomethingElseIsAnError) {
@@ -83,7 +132,7 @@ TEST(TrackRecorder, NothingOrSomethingElseIsAnError) {
 }
 
 TEST(TrackRecorder, MoreCamerasThanNamesIsTheCallersMistake) {
-  TrackRecorder recorder(std::make_shared<sadb::MemoryStore>(), "human", {});
+  TrackRecorder recorder(std::make_shared<sadb::MemoryStore>(), two_dofs(), {});
   EXPECT_THROW((void)recorder.put(tracked(0)), std::invalid_argument);
 }
 

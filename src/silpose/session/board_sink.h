@@ -15,9 +15,9 @@ namespace silpose {
 class BoardSink : public SessionSink {
  public:
   // `cameras`: their names, [C].
-  BoardSink(std::shared_ptr<sadb::Blackboard> board, std::string skeleton, std::vector<std::string> cameras,
+  BoardSink(std::shared_ptr<sadb::Blackboard> board, const Skeleton& skeleton, std::vector<std::string> cameras,
             RecorderOptions options = {})
-      : recorder_(std::move(board), std::move(skeleton), std::move(cameras), std::move(options)) {}
+      : recorder_(std::move(board), skeleton, std::move(cameras), std::move(options)) {}
 
   // Errors: those of the board.
   Result<void> add_report(const StepReport& report) override { return recorder_.put(report); }

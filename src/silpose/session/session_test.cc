@@ -284,7 +284,7 @@ TEST_F(SessionTest, ABoardReceivesTheRecording) {
   const auto board = std::make_shared<sadb::MemoryStore>();
   SessionOptions recorded = options();
   recorded.sinks.push_back(
-      std::make_shared<BoardSink>(board, recorded.tracker.body->skeleton.name(), std::vector<std::string>{"front"}));
+      std::make_shared<BoardSink>(board, recorded.tracker.body->skeleton, std::vector<std::string>{"front"}));
   const SessionResult result = Session(*source, std::move(recorded)).finish().value();
   const TrackRecording read = read_recording(*board).value();
   expect_same(result.recording, read);
