@@ -18,8 +18,8 @@ constexpr double kVelocityShare = 0.5;
 
 class Diffusion final : public MotionModel {
  public:
-  Diffusion(Skeleton skeleton, const MotionOptions& options)
-      : skeleton_(std::move(skeleton)), deviation_(noise_deviation(skeleton_, options.sigma_deg)) {}
+  Diffusion(Skeleton skeleton, const RigProfile& profile, const MotionOptions& options)
+      : skeleton_(std::move(skeleton)), deviation_(noise_deviation(profile, options.sigma_deg)) {}
 
   int state_size() const override { return skeleton_.num_dofs(); }
   StateBatch states_from_poses(const StateBatch& poses) const override {
@@ -57,11 +57,11 @@ class Diffusion final : public MotionModel {
 
 class FirstOrderAugmented final : public MotionModel {
  public:
-  FirstOrderAugmented(Skeleton skeleton, const MotionOptions& options)
+  FirstOrderAugmented(Skeleton skeleton, const RigProfile& profile, const MotionOptions& options)
       : skeleton_(std::move(skeleton)),
         num_dofs_(static_cast<size_t>(skeleton_.num_dofs())),
         velocity_decay_per_s_(options.velocity_decay_per_s),
-        deviation_(noise_deviation(skeleton_, options.sigma_deg)) {
+        deviation_(noise_deviation(profile, options.sigma_deg)) {
     check(std::isfinite(velocity_decay_per_s_) && velocity_decay_per_s_ >= 0, "first order: velocity decay of {} 1/s",
           velocity_decay_per_s_);
     for (size_t d = 0; d < num_dofs_; ++d) deviation_.push_back(kVelocityShare * deviation_[d] / kNoiseInterval_s);
@@ -128,7 +128,7 @@ class FirstOrderAugmented final : public MotionModel {
   void stop_at_limits(std::span<const double> x, std::span<double> v) const {
     const std::span<const Dof> dofs = skeleton_.dofs();
     for (size_t d = 0; d < num_dofs_; ++d) {
-      if (dofs[d].is_translation || dofs[d].is_periodic) continue;
+      if (!dofs[d].has_limits()) continue;
       if (x[d] <= dofs[d].lower) v[d] = std::max(v[d], 0.0);
       if (x[d] >= dofs[d].upper) v[d] = std::min(v[d], 0.0);
     }
@@ -143,10 +143,11 @@ class FirstOrderAugmented final : public MotionModel {
 }  // namespace
 
 Result<std::unique_ptr<MotionModel>> make_motion_model(const std::string& name, const Skeleton& skeleton,
-                                                       const MotionOptions& options) {
-  if (name == "diffusion") return std::unique_ptr<MotionModel>(std::make_unique<Diffusion>(skeleton, options));
+                                                       const RigProfile& profile, const MotionOptions& options) {
+  check_profile(profile, skeleton);
+  if (name == "diffusion") return std::unique_ptr<MotionModel>(std::make_unique<Diffusion>(skeleton, profile, options));
   if (name == "first-order-augmented") {
-    return std::unique_ptr<MotionModel>(std::make_unique<FirstOrderAugmented>(skeleton, options));
+    return std::unique_ptr<MotionModel>(std::make_unique<FirstOrderAugmented>(skeleton, profile, options));
   }
   return error("motion '{}': not one of diffusion, first-order-augmented", name);
 }

@@ -53,9 +53,10 @@ class MotionModel {
   virtual void diffuse(StateBatch& states, std::span<const double> deviation, uint64_t seed, uint64_t stream) const = 0;
 };
 
-// A model of a skeleton by its name on the command line; it keeps a copy of the skeleton.
-// Errors: a name that is unknown or not built. Throws std::invalid_argument for options out of range.
+// A model of a rig by its name on the command line; it keeps a copy of the skeleton.
+// Errors: a name that is unknown or not built. Throws std::invalid_argument for options out of range, and for a profile
+// of another skeleton.
 Result<std::unique_ptr<MotionModel>> make_motion_model(const std::string& name, const Skeleton& skeleton,
-                                                       const MotionOptions& options = {});
+                                                       const RigProfile& profile, const MotionOptions& options = {});
 
 }  // namespace silpose

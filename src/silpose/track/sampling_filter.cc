@@ -23,7 +23,9 @@ SamplingFilter::SamplingFilter(const TrackerOptions& options, const SilhouetteLi
       likelihood_(likelihood),
       free_dofs_(std::move(free_dofs)),
       seed_(seed),
-      motion_(make_motion_model(*options.motion, options.body->skeleton, {.sigma_deg = *options.sigma_deg}).value()),
+      motion_(make_motion_model(*options.motion, options.body->skeleton, options.body->profile,
+                                {.sigma_deg = *options.sigma_deg})
+                  .value()),
       resampler_(make_resampler(*options.resampling, *options.regenerate).value()) {}
 
 void SamplingFilter::start(std::span<const double> pose) {
@@ -54,7 +56,7 @@ void SamplingFilter::make_filter(StateBatch states) {
                                    .adaptive_noise = true,
                                    .circular = periodic_dofs(options_.body->skeleton),
                                    .seed = seed_};
-    for (const auto& limb : limb_blocks(options_.body->skeleton)) annealed.blocks.push_back(motion_->columns_of(limb));
+    for (const auto& limb : limb_blocks(*options_.body)) annealed.blocks.push_back(motion_->columns_of(limb));
     filter_.emplace<AnnealedFilter>(std::move(states), resampler_, std::move(annealed));
   }
 }

@@ -12,7 +12,6 @@
 #include "silpose/base/parallel.h"
 #include "silpose/base/state_bytes.h"
 #include "silpose/body/levels.h"
-#include "silpose/motion/noise.h"
 #include "silpose/track/body_error.h"
 #include "silpose/track/initialisation.h"
 #include "silpose/track/judged_clip.h"
@@ -205,7 +204,7 @@ class ClipTracker {
   // Of all hypotheses, the sequence that fits best and moves most plausibly. Source: Viterbi's algorithm.
   std::vector<VectorXd> best_path() {
     const Skeleton& skeleton = options_.body->skeleton;
-    std::vector<double> scale = acceleration_deviation(skeleton);
+    std::vector<double> scale = options_.body->profile.acceleration;
     for (double& deviation : scale) deviation *= kTransitionScale;
     parallel_for(last_ - first_ + 1, 4, [&](size_t begin, size_t end) {
       CoverageLikelihood::Scratch scratch(*likelihood_);
@@ -355,7 +354,7 @@ class ClipTracker {
 
   static constexpr size_t kNumPasses = 3;
   static constexpr double kPassShare = 0.35;     // of the whole work, one pass over the whole clip
-  static constexpr double kTransitionScale = 4;  // times acceleration_deviation: hypotheses are fits, not truths
+  static constexpr double kTransitionScale = 4;  // times the profile's acceleration: hypotheses are fits, not truths
   static constexpr double kTransitionCap = 30;   // of one DOF
 
   TrackerOptions options_;

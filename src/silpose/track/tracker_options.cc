@@ -80,7 +80,7 @@ void TrackerOptions::check() const {
             "smooth and floor are of the fitted mixture: they go with neither particles nor preset thesis");
     const auto resampler = make_resampler(*all.resampling, *all.regenerate);
     require(resampler.ok(), resampler.ok() ? "" : resampler.error().message);
-    const auto model = make_motion_model(*all.motion, body->skeleton, {});
+    const auto model = make_motion_model(*all.motion, body->skeleton, body->profile);
     require(model.ok(), model.ok() ? "" : model.error().message);
   }
   require(std::isfinite(resample_below) && resample_below >= 0 && resample_below <= 1,
@@ -109,7 +109,7 @@ size_t start_camera(std::span<const Observation> observations) {
 std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options, size_t camera_idx) {
   if (options.landmarks) return std::make_shared<const LandmarkProposal>(options.body, options.cameras[camera_idx]);
   if (options.proposal) return options.proposal;
-  return std::make_shared<const CommonPoses>(options.body->skeleton);
+  return std::make_shared<const CommonPoses>(options.body->skeleton, options.body->profile);
 }
 
 }  // namespace silpose
