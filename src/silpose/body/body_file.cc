@@ -7,15 +7,19 @@
 
 #include "silpose/base/checked_file.h"
 #include "silpose/body/body_model.h"
+#include "silpose/body/default_profile.h"
+#include "silpose/body/human.h"
+#include "silpose/body/human_profile.h"
 
 namespace silpose {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "the .body file is copied byte by byte");
 
-// Levels came with version 2; a body without any is written as version 1, which older programs read.
-constexpr FileKind kPlainBodyFile{.magic = "SILPBODY", .version = 1, .name = "body file"};
-constexpr FileKind kBodyFile{.magic = "SILPBODY", .version = 2, .name = "body file", .oldest_version = 1};
+// Version 2 added the levels, version 3 rest rotations and the rig's profile: an older file ends before them.
+constexpr FileKind kBodyFile{.magic = "SILPBODY", .version = 3, .name = "body file", .oldest_version = 1};
+
+enum DofFlag : uint8_t { kTranslation = 1, kPeriodic = 2, kShape = 4, kBounded = 8 };
 
 class Writer {
  public:
@@ -31,6 +35,17 @@ class Writer {
   }
   void put(const Eigen::Vector3d& x) {
     for (int k = 0; k < 3; ++k) put(x[k]);
+  }
+  void put(const Eigen::Matrix3d& rotation) {
+    for (int k = 0; k < 3; ++k) put(Eigen::Vector3d(rotation.col(k)));
+  }
+  void put(const std::optional<Eigen::Vector3d>& x) {
+    put(static_cast<uint8_t>(x.has_value()));
+    if (x) put(*x);
+  }
+  void put_indices(const std::vector<int>& indices) {
+    put_count(indices.size());
+    for (const int index : indices) put(static_cast<int32_t>(index));
   }
   template <class T>
   void put_array(const T* data, size_t count) {
@@ -75,6 +90,21 @@ class Reader {
     if (!x.allFinite()) throw Malformed("a coordinate is not finite");
     return x;
   }
+  Eigen::Matrix3d get_rotation() {
+    Eigen::Matrix3d rotation;
+    for (int k = 0; k < 3; ++k) rotation.col(k) = get_vector();
+    if ((rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-6) {
+      throw Malformed("a rotation is none");
+    }
+    return rotation;
+  }
+  std::optional<Eigen::Vector3d> get_optional_vector() {
+    return get<uint8_t>() != 0 ? std::optional(get_vector()) : std::nullopt;
+  }
+  std::vector<int> get_indices() {
+    const std::vector<int32_t> indices = get_array<int32_t>(get_count(sizeof(int32_t)));
+    return {indices.begin(), indices.end()};
+  }
   template <class T>
   std::vector<T> get_array(size_t count) {
     if (count > bytes_.size() / sizeof(T)) throw Malformed("it ends too early");
@@ -108,7 +138,8 @@ void put_skeleton(Writer& out, const Skeleton& skeleton) {
   for (const Dof& dof : skeleton.dofs()) {
     out.put(dof.name);
     out.put(static_cast<int32_t>(dof.joint_idx));
-    out.put(static_cast<uint8_t>((dof.is_translation ? 1 : 0) | (dof.is_periodic ? 2 : 0)));
+    out.put(static_cast<uint8_t>((dof.is_translation ? kTranslation : 0) | (dof.is_periodic ? kPeriodic : 0) |
+                                 (dof.is_shape ? kShape : 0) | (dof.is_bounded ? kBounded : 0)));
     out.put(dof.axis);
     out.put(dof.lower);
     out.put(dof.upper);
@@ -130,8 +161,10 @@ Skeleton get_skeleton(Reader& in) {
     dof.name = in.get_text();
     dof.joint_idx = in.get<int32_t>();
     const uint8_t flags = in.get<uint8_t>();
-    dof.is_translation = (flags & 1) != 0;
-    dof.is_periodic = (flags & 2) != 0;
+    dof.is_translation = (flags & kTranslation) != 0;
+    dof.is_periodic = (flags & kPeriodic) != 0;
+    dof.is_shape = (flags & kShape) != 0;
+    dof.is_bounded = (flags & kBounded) != 0;
     dof.axis = in.get_vector();
     dof.lower = in.get<double>();
     dof.upper = in.get<double>();
@@ -189,16 +222,112 @@ std::vector<BodyLevel> get_levels(Reader& in, size_t num_vertices) {
   return levels;
 }
 
+void put_profile(Writer& out, const RigProfile& profile) {
+  out.put_indices(profile.root_translations);
+  out.put(static_cast<int32_t>(profile.heading.value_or(-1)));
+  out.put(profile.up);
+  out.put(profile.facing);
+  out.put_count(profile.limbs.size());
+  for (const Limb& limb : profile.limbs) {
+    out.put_indices(limb.joints);
+    out.put_indices(limb.dofs);
+  }
+  out.put_count(profile.limb_pairs.size());
+  for (const auto& [right, left] : profile.limb_pairs) {
+    out.put_count(right);
+    out.put_count(left);
+  }
+  out.put_count(profile.across.size());
+  for (const auto& [right, left] : profile.across) {
+    out.put(static_cast<int32_t>(right));
+    out.put(static_cast<int32_t>(left));
+  }
+  out.put_indices(profile.contact_joints);
+  out.put_count(profile.landmarks.size());
+  for (const RigProfile::Landmark& landmark : profile.landmarks) {
+    out.put(landmark.name);
+    out.put_count(landmark.other_names.size());
+    for (const auto& [format, name] : landmark.other_names) {
+      out.put(format);
+      out.put(name);
+    }
+  }
+  out.put_count(profile.origin.size());
+  for (const std::string& name : profile.origin) out.put(name);
+  for (const auto* of : {&profile.noise, &profile.acceleration, &profile.rest, &profile.rest_if_seen}) {
+    out.put_array(of->data(), of->size());
+  }
+  out.put_count(profile.poses.size());
+  for (const auto& [name, pose] : profile.poses) {
+    out.put(name);
+    out.put_array(pose.data(), pose.size());
+  }
+  out.put(profile.silhouette_area);
+}
+
+RigProfile get_profile(Reader& in, const Skeleton& skeleton) {
+  RigProfile profile;
+  const auto D = static_cast<size_t>(skeleton.num_dofs());
+  profile.root_translations = in.get_indices();
+  if (const auto heading = in.get<int32_t>(); heading >= 0) profile.heading = heading;
+  profile.up = in.get_optional_vector();
+  profile.facing = in.get_optional_vector();
+  profile.limbs.resize(in.get_count(8));
+  for (Limb& limb : profile.limbs) limb = {in.get_indices(), in.get_indices()};
+  profile.limb_pairs.resize(in.get_count(8));
+  for (auto& [right, left] : profile.limb_pairs) {
+    right = in.get<uint32_t>();
+    left = in.get<uint32_t>();
+  }
+  profile.across.resize(in.get_count(8));
+  for (auto& [right, left] : profile.across) {
+    right = in.get<int32_t>();
+    left = in.get<int32_t>();
+  }
+  profile.contact_joints = in.get_indices();
+  profile.landmarks.resize(in.get_count(8));
+  for (RigProfile::Landmark& landmark : profile.landmarks) {
+    landmark.name = in.get_text();
+    for (size_t left = in.get_count(8); left > 0; --left) {
+      std::string format = in.get_text();
+      landmark.other_names[std::move(format)] = in.get_text();
+    }
+  }
+  profile.origin.resize(in.get_count(4));
+  for (std::string& name : profile.origin) name = in.get_text();
+  for (auto* of : {&profile.noise, &profile.acceleration, &profile.rest, &profile.rest_if_seen}) {
+    *of = in.get_array<double>(D);
+  }
+  profile.poses.resize(in.get_count(4));
+  for (auto& [name, pose] : profile.poses) {
+    name = in.get_text();
+    pose = in.get_array<double>(D);
+  }
+  profile.silhouette_area = in.get<double>();
+  check_profile(profile, skeleton);
+  return profile;
+}
+
+// What version 3 added. Bodies of older files get the profile of the human, or the default one.
+void get_rig(Reader& in, BodyModel& body) {
+  if (in.at_end()) {
+    body.profile = has_human_joints(body.skeleton) ? human_profile(body.skeleton) : default_profile(body);
+    return;
+  }
+  std::vector<Joint> joints(body.skeleton.joints().begin(), body.skeleton.joints().end());
+  for (Joint& joint : joints) joint.parent_from_rest = in.get_rotation();
+  body.skeleton =
+      Skeleton(body.skeleton.name(), std::move(joints), {body.skeleton.dofs().begin(), body.skeleton.dofs().end()});
+  body.profile = get_profile(in, body.skeleton);
+}
+
 BodyModel get_body(Reader& in) {
   std::string name = in.get_text();
   Skeleton skeleton = get_skeleton(in);
   std::vector<Rigid3> joint_from_rest(static_cast<size_t>(skeleton.num_joints()));
   for (Rigid3& transform : joint_from_rest) {
-    for (int k = 0; k < 3; ++k) transform.rotation.col(k) = in.get_vector();
+    transform.rotation = in.get_rotation();
     transform.translation = in.get_vector();
-    if ((transform.rotation * transform.rotation.transpose() - Eigen::Matrix3d::Identity()).norm() > 1e-6) {
-      throw Malformed("a rotation is none");
-    }
   }
   BodyModel body{.name = std::move(name),
                  .skeleton = std::move(skeleton),
@@ -209,7 +338,8 @@ BodyModel get_body(Reader& in) {
                  .height_m = 0,
                  .weight_kg = 0,
                  .facts = {},
-                 .levels = {}};
+                 .levels = {},
+                 .profile = {}};
   body.rest.vertices = in.get_array<Eigen::Vector3f>(in.get_count(sizeof(Eigen::Vector3f)));
   body.rest.faces = in.get_array<Face>(in.get_count(sizeof(Face)));
   body.skin.row_start = in.get_array<uint32_t>(body.rest.vertices.size() + 1);
@@ -233,6 +363,7 @@ BodyModel get_body(Reader& in) {
     body.facts[std::move(key)] = in.get_text();
   }
   if (!in.at_end()) body.levels = get_levels(in, body.rest.vertices.size());
+  get_rig(in, body);
   if (!in.at_end()) throw Malformed("bytes are left over");
   return body;
 }
@@ -240,11 +371,12 @@ BodyModel get_body(Reader& in) {
 }  // namespace
 
 Result<void> write_body(const std::filesystem::path& path, const BodyModel& body) {
+  check_profile(body.profile, body.skeleton);
   Writer out;
   out.put(body.name);
   put_skeleton(out, body.skeleton);
   for (const Rigid3& transform : body.joint_from_rest) {
-    for (int k = 0; k < 3; ++k) out.put(Eigen::Vector3d(transform.rotation.col(k)));
+    out.put(transform.rotation);
     out.put(transform.translation);
   }
   out.put_count(body.rest.vertices.size());
@@ -268,7 +400,6 @@ Result<void> write_body(const std::filesystem::path& path, const BodyModel& body
     out.put(key);
     out.put(value);
   }
-  if (body.levels.empty()) return write_checked_file(path, kPlainBodyFile, out.bytes());
   out.put_count(body.levels.size());
   for (const BodyLevel& level : body.levels) {
     out.put(static_cast<int32_t>(level.asked_vertices));
@@ -279,6 +410,8 @@ Result<void> write_body(const std::filesystem::path& path, const BodyModel& body
     out.put_count(level.faces.size());
     out.put_array(level.faces.data(), level.faces.size());
   }
+  for (const Joint& joint : body.skeleton.joints()) out.put(joint.parent_from_rest);
+  put_profile(out, body.profile);
   return write_checked_file(path, kBodyFile, out.bytes());
 }
 

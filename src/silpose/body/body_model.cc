@@ -109,11 +109,14 @@ double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen:
 
 std::vector<double> standing_pose(const BodyModel& body) {
   std::vector<double> pose(body.skeleton.dofs().size(), 0.0);
-  const std::optional<int> root_ty = body.skeleton.find_dof("root_ty");
-  if (!root_ty || body.rest.vertices.empty()) return pose;
+  const auto height_by = [&](int d) { return body.skeleton.axis_in_parent(d).y(); };
+  const auto goes_up = [&](int d) { return height_by(d) != 0; };
+  if (std::ranges::none_of(body.profile.root_translations, goes_up) || body.rest.vertices.empty()) return pose;
   float lowest = std::numeric_limits<float>::infinity();
   for (const Eigen::Vector3f& x : skin_vertices(body, pose)) lowest = std::min(lowest, x.y());
-  pose[*root_ty] = -lowest;
+  for (const int d : body.profile.root_translations) {
+    if (goes_up(d)) pose[d] = height_by(d) * -lowest;
+  }
   return pose;
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "silpose/base/result.h"
+#include "silpose/body/rig_profile.h"
 #include "silpose/body/skeleton.h"
 #include "silpose/geometry/mesh.h"
 
@@ -50,6 +51,7 @@ struct BodyModel {
   double height_m = 0, weight_kg = 0;        // stature and mass of the rest mesh
   std::map<std::string, std::string> facts;  // how it was built: sliders, source data, its hash
   std::vector<BodyLevel> levels;             // from coarse to fine; those that level_of_detail() need not make
+  RigProfile profile;                        // of `skeleton`: human_profile(), default_profile(), or the author's own
 };
 
 // Vertices [V] of the mesh for a pose [D], world coordinates. `world_from_joint` [J] is scratch and result.
@@ -67,8 +69,8 @@ void skin_vertices(const BodyModel& body, std::span<const double> pose, std::spa
 // The largest distance between corresponding joints or end points, metres. Shapes: landmarks [J + E] of two poses.
 [[nodiscard]] double furthest_apart(std::span<const Eigen::Vector3d> a, std::span<const Eigen::Vector3d> b);
 
-// The zero pose with the lowest vertex on the floor y = 0 and the root above the origin, for skeletons whose root has a
-// translation root_ty; otherwise zeros. [D]
+// The zero pose with the lowest vertex on the floor y = 0 and the root above the origin, for rigs whose root
+// translations go upwards; otherwise zeros. [D]
 [[nodiscard]] std::vector<double> standing_pose(const BodyModel& body);
 
 // A level of about `num_vertices` vertices: still closed, vertices kept where they were, outline kept (the human at
@@ -91,7 +93,8 @@ void skin_vertices(const BodyModel& body, std::span<const double> pose, std::spa
                                                                int num_vertices);
 
 // The .body file: everything above, compact and little-endian (docs/formats.md).
-// Errors: missing, empty, truncated, wrong magic or version, checksum; each names the file.
+// Errors: missing, empty, truncated, wrong magic or version, checksum; each names the file. write_body() throws
+// std::invalid_argument where the profile does not suit the skeleton.
 Result<void> write_body(const std::filesystem::path& path, const BodyModel& body);
 Result<BodyModel> load_body(const std::filesystem::path& path);
 

@@ -5,6 +5,7 @@
 #include "silpose/base/check.h"
 #include "silpose/body/human.h"
 #include "silpose/body/human_joints.h"
+#include "silpose/body/human_profile.h"
 #include "silpose/body/human_shape.h"
 #include "silpose/body/makehuman_assets.h"
 
@@ -115,6 +116,7 @@ Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenot
                  .height_m = stature_m(shape),
                  .weight_kg = mass_kg(shape, assets.base.body_faces),
                  .facts = {}};
+  body.profile = human_profile(body.skeleton);
   const auto add_end_point = [&](const char* name, int joint, const std::string& cube) {
     body.end_points.push_back({name, joint, body.joint_from_rest[joint] * rest.centre(cube)});
   };

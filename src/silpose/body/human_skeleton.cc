@@ -1,4 +1,5 @@
 // The skeleton of the thesis. Signs, orders and the sources of the limits are explained in docs/formats.md.
+#include <algorithm>
 #include <array>
 
 #include "silpose/base/check.h"
@@ -113,6 +114,11 @@ Skeleton human_skeleton(std::span<const Eigen::Vector3d> joint_in_world) {
   add_motion(arm_motion(), "right_", joints, dofs);
   add_motion(arm_motion(), "left_", joints, dofs);
   return Skeleton("human", std::move(joints), std::move(dofs));
+}
+
+bool has_human_joints(const Skeleton& skeleton) {
+  const auto is_called = [](const Joint& joint, const JointRow& row) { return joint.name == row.name; };
+  return std::ranges::equal(skeleton.joints(), kJoints, is_called);
 }
 
 }  // namespace silpose

@@ -36,7 +36,7 @@ std::string_view without_side(std::string_view name) {
 }
 
 Skeleton::Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof> dofs)
-    : name_(std::move(name)), joints_(std::move(joints)), dofs_(std::move(dofs)) {
+    : name_(std::move(name)), joints_(std::move(joints)), dofs_(std::move(dofs)), axis_in_parent_(dofs_.size()) {
   std::vector<int> uses(dofs_.size(), 0);
   step_start_.reserve(joints_.size() + 1);
   for (int j = 0; j < num_joints(); ++j) {
@@ -44,6 +44,9 @@ Skeleton::Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof>
     check(joint.parent_idx >= -1 && joint.parent_idx < j,
           "skeleton '{}': parent {} of joint {} does not come before it", name_, joint.parent_idx, j);
     check(joint.offset_in_parent.allFinite(), "skeleton '{}': offset of joint '{}' is not finite", name_, joint.name);
+    check(joint.parent_from_rest.isUnitary(1e-6) && joint.parent_from_rest.determinant() > 0,
+          "skeleton '{}': the rest rotation of joint '{}' is none", name_, joint.name);
+    is_rotated_.push_back(joint.parent_from_rest != Eigen::Matrix3d::Identity());
     step_start_.push_back(steps_.size());
     bool rotated = false;
     for (const int d : joint.dof_indices) {
@@ -56,6 +59,7 @@ Skeleton::Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof>
       check(!dof.is_translation || !rotated, "skeleton '{}': translation '{}' comes after a rotation", name_, dof.name);
       rotated = !dof.is_translation;
       ++uses[d];
+      axis_in_parent_[d] = is_rotated_.back() ? Eigen::Vector3d(joint.parent_from_rest * dof.axis) : dof.axis;
       Step step{.dof_idx = d, .is_translation = dof.is_translation};
       for (int k = 0; k < 3; ++k) {
         if (std::abs(dof.axis[k]) == 1) step = {d, k, dof.axis[k], dof.is_translation};
@@ -100,7 +104,7 @@ void Skeleton::forward_kinematics(std::span<const double> pose, std::span<Rigid3
     size_t step = step_start_[j];
     for (; step < step_start_[j + 1] && steps_[step].is_translation; ++step) {
       const int d = steps_[step].dof_idx;
-      offset += pose[d] * dofs_[d].axis;
+      offset += pose[d] * axis_in_parent_[d];
     }
     if (joint.parent_idx >= 0) {
       const Rigid3& parent = world_from_joint[joint.parent_idx];
@@ -110,6 +114,7 @@ void Skeleton::forward_kinematics(std::span<const double> pose, std::span<Rigid3
       out.rotation.setIdentity();
       out.translation = offset;
     }
+    if (is_rotated_[j]) out.rotation *= joint.parent_from_rest;
     for (; step < step_start_[j + 1]; ++step) {
       const Step& s = steps_[step];
       turn(out.rotation, s.cardinal, s.sign, dofs_[s.dof_idx].axis, pose[s.dof_idx]);
@@ -131,6 +136,7 @@ Eigen::Matrix3Xd Skeleton::dof_axes(std::span<const double> pose, std::span<cons
     const int parent = joints_[j].parent_idx;
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
     if (parent >= 0) rotation = world_from_joint[parent].rotation;
+    if (is_rotated_[j]) rotation *= joints_[j].parent_from_rest;
     for (size_t step = step_start_[j]; step < step_start_[j + 1]; ++step) {
       const Step& s = steps_[step];
       axes.col(s.dof_idx) = rotation * dofs_[s.dof_idx].axis;
@@ -141,12 +147,20 @@ Eigen::Matrix3Xd Skeleton::dof_axes(std::span<const double> pose, std::span<cons
   return axes;
 }
 
+const Eigen::Vector3d& Skeleton::axis_in_parent(int dof_idx) const {
+  check(dof_idx >= 0 && dof_idx < num_dofs(), "axis_in_parent: no DOF {}", dof_idx);
+  return axis_in_parent_[dof_idx];
+}
+
 void Skeleton::clamp(std::span<double> pose) const {
   check(pose.size() == dofs_.size(), "clamp: pose has {} values, not {}", pose.size(), dofs_.size());
   for (size_t d = 0; d < dofs_.size(); ++d) {
     const Dof& dof = dofs_[d];
-    if (dof.is_translation) continue;
-    pose[d] = dof.is_periodic ? wrap_angle(pose[d]) : std::clamp(pose[d], dof.lower, dof.upper);
+    if (dof.has_limits()) {
+      pose[d] = std::clamp(pose[d], dof.lower, dof.upper);
+    } else if (!dof.is_translation) {
+      pose[d] = wrap_angle(pose[d]);
+    }
   }
 }
 
@@ -166,16 +180,6 @@ std::vector<double> Skeleton::denormalise(std::span<const double> npsu) const {
     pose[d] = dofs_[d].lower + npsu[d] * (dofs_[d].upper - dofs_[d].lower);
   }
   return pose;
-}
-
-void place_root(const Skeleton& skeleton, std::span<double> pose, const Eigen::Vector3d& root_in_world) {
-  check(std::ssize(pose) == skeleton.num_dofs(), "place_root: pose has {} values, not {}", pose.size(),
-        skeleton.num_dofs());
-  for (size_t d = 0; d < pose.size(); ++d) {
-    const Dof& dof = skeleton.dofs()[d];
-    if (dof.joint_idx != 0 || !dof.is_translation) continue;
-    pose[d] = dof.axis.dot(root_in_world - skeleton.joints()[0].offset_in_parent);
-  }
 }
 
 }  // namespace silpose

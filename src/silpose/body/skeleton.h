@@ -17,10 +17,9 @@
 
 namespace silpose {
 
-// One degree of freedom: a translation along, or a rotation about, `axis`: a unit vector in the joint's own frame,
-// whose axes are the world's in the zero pose. Joint::dof_indices gives the order in which a joint's rotations are
-// applied. Translations come before (outside) all rotations of their joint: those of a root without offset are its
-// world position.
+// One degree of freedom: a translation along, or a rotation about, `axis`: a unit vector in the joint's own frame.
+// Joint::dof_indices gives the order in which a joint's rotations are applied. Translations come before (outside) all
+// rotations of their joint: those of a root without offset are its world position.
 struct Dof {
   std::string name;  // column without its unit: "right_thigh_rx", "root_tx"
   int joint_idx = 0;
@@ -28,8 +27,11 @@ struct Dof {
   bool is_periodic = false;                         // a full turn: limits are for NPSU only, values wrap
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();  // positive values turn by the right hand about it
   double lower = 0, upper = 0;                      // radians or metres
-  bool is_shape = false;  // a property of the body, the same in every pose of a clip (stretchable.h)
+  bool is_shape = false;    // a property of the body, the same in every pose of a clip (stretchable.h)
+  bool is_bounded = false;  // a translation that stays within its limits; without it they are for NPSU only
 
+  // Whether poses are kept within the limits.
+  [[nodiscard]] bool has_limits() const { return is_translation ? is_bounded : !is_periodic; }
   [[nodiscard]] std::string column() const { return name + (is_translation ? "_m" : "_deg"); }
 };
 
@@ -41,11 +43,15 @@ struct Joint {
   int parent_idx = -1;                                         // -1: the root; always < own index
   Eigen::Vector3d offset_in_parent = Eigen::Vector3d::Zero();  // metres, in the zero pose
   std::vector<int> dof_indices = {};                           // rotations in order of application, outermost first
+  // Rotation of the joint's own axes in its parent's, in the zero pose: of a root, in the world's. Imported rigs keep
+  // their axes by it; the human's are the world's.
+  Eigen::Matrix3d parent_from_rest = Eigen::Matrix3d::Identity();
 };
 
 class Skeleton {
  public:
-  // Errors: throws std::invalid_argument unless parents come first, limits are ordered and DOF refer to joints.
+  // Errors: throws std::invalid_argument unless parents come first, limits are ordered, DOF refer to joints and rest
+  // rotations are rotations.
   Skeleton(std::string name, std::vector<Joint> joints, std::vector<Dof> dofs);
 
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -58,7 +64,7 @@ class Skeleton {
   // True when `joint_idx` is `ancestor_idx` or hangs below it.
   [[nodiscard]] bool is_below(int joint_idx, int ancestor_idx) const;
 
-  // [J] where each joint's coordinate frame is for a pose [D]; all axes are the world's in the zero pose.
+  // [J] where each joint's coordinate frame is for a pose [D].
   void forward_kinematics(std::span<const double> pose, std::span<Rigid3> world_from_joint) const;
   [[nodiscard]] std::vector<Rigid3> forward_kinematics(std::span<const double> pose) const;
 
@@ -66,7 +72,10 @@ class Skeleton {
   // (through the joint's centre). `world_from_joint` [J] comes from forward_kinematics.
   [[nodiscard]] Eigen::Matrix3Xd dof_axes(std::span<const double> pose, std::span<const Rigid3> world_from_joint) const;
 
-  // Brings a pose inside the limits: clamps, and wraps periodic DOF. Translations are left alone.
+  // The axis of a DOF in the parent's frame, before the joint's own rotations: of a root's translation, in the world.
+  [[nodiscard]] const Eigen::Vector3d& axis_in_parent(int dof_idx) const;
+
+  // Brings a pose inside the limits: clamps, and wraps periodic DOF. Translations that are not bounded are left alone.
   void clamp(std::span<double> pose) const;
 
   // Natural units to NPSU (0 at the lower limit, 1 at the upper) and back, linear everywhere: nothing is clamped or
@@ -87,14 +96,10 @@ class Skeleton {
   std::vector<Joint> joints_;
   std::vector<Dof> dofs_;
   std::vector<Step> steps_;
-  std::vector<size_t> step_start_;  // [J + 1] steps of joint j: step_start_[j] to step_start_[j + 1]
+  std::vector<size_t> step_start_;               // [J + 1] steps of joint j: step_start_[j] to step_start_[j + 1]
+  std::vector<bool> is_rotated_;                 // [J] parent_from_rest is not the identity, whose product is skipped
+  std::vector<Eigen::Vector3d> axis_in_parent_;  // [D]
 };
-
-// Sets the translations of the root so that its joint is at `root_in_world`, in metres; all else in the pose [D] stays.
-// Their axes must be orthogonal. A root with fewer than three is moved as near as possible; one without any is not
-// moved.
-// Errors: throws std::invalid_argument for a pose of another size.
-void place_root(const Skeleton& skeleton, std::span<double> pose, const Eigen::Vector3d& root_in_world);
 
 // Indices of the DOF for which `predicate(const Dof&)` holds, ascending.
 template <class Predicate>

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "silpose/base/rng.h"
@@ -187,34 +188,49 @@ TEST(Skeleton, TurnsAboutAnyAxis) {
 
 // A root with an offset whose rotations come first, whose translations are in another order than x, y, z, and one of
 // which points down.
-TEST(Skeleton, PlacesTheRootWhereverItsTranslationsAre) {
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
+// A joint whose own axes are turned at rest: its DOF turn about them, and the joints below go along.
+TEST(Skeleton, KeepsRestRotations) {
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), z = Eigen::Vector3d::UnitZ();
+  const Eigen::Matrix3d quarter = Eigen::AngleAxisd(kPi / 2, z).toRotationMatrix();  // own x is the parent's y
   const Skeleton skeleton(
-      "rig",
-      {{.name = "root", .offset_in_parent = {0.1, 0.2, 0.3}, .dof_indices = {1, 3, 4, 0}},
-       {.name = "tip", .parent_idx = 0, .offset_in_parent = {0, 1, 0}, .dof_indices = {2, 5}}},
-      {{.name = "root_ry", .axis = y, .lower = -1, .upper = 1},
-       {.name = "root_tz", .is_translation = true, .axis = z, .lower = -1, .upper = 1},
-       {.name = "tip_ty", .joint_idx = 1, .is_translation = true, .axis = y, .lower = -1, .upper = 1},
-       {.name = "root_tx", .is_translation = true, .axis = x, .lower = -1, .upper = 1},
-       {.name = "root_down", .is_translation = true, .axis = -y, .lower = -1, .upper = 1},
-       {.name = "tip_rx", .joint_idx = 1, .axis = x, .lower = -1, .upper = 1}});
-  std::vector<double> pose = {0.5, 9, 0.25, 9, 9, -0.75};
-  const Eigen::Vector3d place(3, -4, 5);
-  place_root(skeleton, pose, place);
-  EXPECT_THAT(pose,
-              ElementsAre(0.5, DoubleNear(4.7, 1e-12), 0.25, DoubleNear(2.9, 1e-12), DoubleNear(4.2, 1e-12), -0.75));
-  EXPECT_LT((skeleton.forward_kinematics(pose)[0].translation - place).norm(), 1e-12);
+      "arm",
+      {{.name = "root", .dof_indices = {0}},
+       {.name = "elbow", .parent_idx = 0, .offset_in_parent = x, .dof_indices = {1, 2}, .parent_from_rest = quarter},
+       {.name = "hand", .parent_idx = 1, .offset_in_parent = x}},
+      {{.name = "root_rz", .axis = z, .lower = -4, .upper = 4},
+       {.name = "elbow_tx", .joint_idx = 1, .is_translation = true, .axis = x, .lower = -1, .upper = 1},
+       {.name = "elbow_rz", .joint_idx = 1, .axis = z, .lower = -4, .upper = 4}});
+  EXPECT_LT((skeleton.axis_in_parent(1) - Eigen::Vector3d::UnitY()).norm(), 1e-12);
+  const auto hand = [&](const std::vector<double>& pose) -> Eigen::Vector3d {
+    return skeleton.forward_kinematics(pose)[2].translation;
+  };
+  EXPECT_LT((hand({0, 0, 0}) - Eigen::Vector3d(1, 1, 0)).norm(), 1e-12);
+  EXPECT_LT((hand({0, 0.5, 0}) - Eigen::Vector3d(1, 1.5, 0)).norm(), 1e-12);
+  EXPECT_LT((hand({0, 0, kPi / 2}) - Eigen::Vector3d(0, 0, 0)).norm(), 1e-12);
+  EXPECT_LT((hand({kPi / 2, 0, 0}) - Eigen::Vector3d(-1, 1, 0)).norm(), 1e-12);
+  const std::vector<double> pose = {0.3, 0.2, -0.7};
+  const std::vector<Rigid3> at = skeleton.forward_kinematics(pose);
+  const Eigen::Matrix3Xd axes = skeleton.dof_axes(pose, at);
+  for (size_t d = 0; d < 3; ++d) {
+    std::vector<double> moved = pose;
+    moved[d] += 1e-6;
+    const Eigen::Vector3d centre = at[d == 0 ? 0 : 1].translation, axis = axes.col(static_cast<Eigen::Index>(d));
+    const Eigen::Vector3d expected = d == 1 ? axis : Eigen::Vector3d(axis.cross(at[2].translation - centre));
+    EXPECT_LT(((hand(moved) - at[2].translation) / 1e-6 - expected).norm(), 1e-5) << d;
+  }
 }
 
-TEST(Skeleton, DoesNotPlaceARootThatCannotMove) {
-  const Skeleton skeleton("arm", {{.name = "root", .dof_indices = {0, 1}}},
-                          {{.name = "root_ry", .axis = Eigen::Vector3d::UnitY(), .lower = -1, .upper = 1},
-                           {.name = "root_rx", .axis = Eigen::Vector3d::UnitX(), .lower = -1, .upper = 1}});
-  std::vector<double> pose = {0.5, -0.25};
-  place_root(skeleton, pose, {1, 2, 3});
-  EXPECT_THAT(pose, ElementsAre(0.5, -0.25));
-  EXPECT_THROW(place_root(skeleton, std::span(pose).first(1), {1, 2, 3}), std::invalid_argument);
+TEST(Skeleton, ClampsTranslationsThatAreBounded) {
+  const Dof slide{.name = "slide", .is_translation = true, .lower = -0.1, .upper = 0.2};
+  Dof bounded = slide;
+  bounded.name = "rail";
+  bounded.is_bounded = true;
+  const Skeleton skeleton("s", {{.name = "root", .dof_indices = {0, 1}}}, {slide, bounded});
+  std::vector<double> pose = {5, 5};
+  skeleton.clamp(pose);
+  EXPECT_THAT(pose, ElementsAre(5, 0.2));
+  EXPECT_FALSE(skeleton.dofs()[0].has_limits());
+  EXPECT_TRUE(skeleton.dofs()[1].has_limits());
 }
 
 TEST(Skeleton, RefusesWhatDoesNotFit) {
@@ -228,6 +244,10 @@ TEST(Skeleton, RefusesWhatDoesNotFit) {
   bad = dof;
   bad.axis *= 2;
   EXPECT_THROW(Skeleton("s", {{.name = "a", .dof_indices = {0}}}, {bad}), std::invalid_argument);
+  EXPECT_THROW(Skeleton("s", {{.name = "a", .parent_from_rest = 2 * Eigen::Matrix3d::Identity()}}, {}),
+               std::invalid_argument);
+  EXPECT_THROW(Skeleton("s", {{.name = "a", .parent_from_rest = -Eigen::Matrix3d::Identity()}}, {}),
+               std::invalid_argument);
   const Skeleton good("s", {{.name = "a", .dof_indices = {0}}}, {dof});
   EXPECT_THROW((void)good.forward_kinematics(std::vector<double>{1, 2}), std::invalid_argument);
 }

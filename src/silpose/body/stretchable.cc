@@ -27,13 +27,14 @@ BodyModel stretchable(const BodyModel& body) {
     dofs.push_back({.name = joints[j].name + "_length",
                     .joint_idx = static_cast<int>(j),
                     .is_translation = true,
-                    .axis = joints[j].offset_in_parent / length,
+                    .axis = joints[j].parent_from_rest.transpose() * (joints[j].offset_in_parent / length),
                     .lower = -limit,
                     .upper = limit,
                     .is_shape = true});
   }
   BodyModel out = body;
   out.skeleton = Skeleton(skeleton.name(), std::move(joints), std::move(dofs));
+  out.profile = extended(body.profile, out.skeleton);
   return out;
 }
 
@@ -47,7 +48,7 @@ BodyModel with_lengths(const BodyModel& body, std::span<const double> lengths) {
     const Dof& dof = stretched.dofs()[static_cast<size_t>(shape[s])];
     Joint& joint = joints[static_cast<size_t>(dof.joint_idx)];
     check(joint.offset_in_parent.norm() + lengths[s] > 0, "with_lengths: {} of {} m", dof.name, lengths[s]);
-    joint.offset_in_parent += lengths[s] * dof.axis;
+    joint.offset_in_parent += lengths[s] * stretched.axis_in_parent(shape[s]);
   }
   // How far each joint moves in the mesh's own rest pose; its flesh moves with it.
   std::vector<Eigen::Vector3d> moved(joints.size(), Eigen::Vector3d::Zero());

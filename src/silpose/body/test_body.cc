@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "silpose/body/default_profile.h"
+
 namespace silpose {
 namespace {
 
@@ -83,6 +85,8 @@ BodyModel make_ball_body() {
     body.skin.weight.push_back(1);
   }
   body.skin.row_start.push_back(static_cast<uint32_t>(body.rest.vertices.size()));
+  body.height_m = 2 * kBallRadius;
+  body.profile = default_profile(body);
   return body;
 }
 
@@ -121,15 +125,18 @@ BodyModel make_test_body() {
   joint_from_rest[0].translation = {0, -kPelvis, 0};
   joint_from_rest[1].translation = {0, -kMiddle, 0};
   joint_from_rest[2].translation = {0, -kTip, 0};
-  return {.name = "tube",
-          .skeleton = make_skeleton(),
-          .rest = std::move(mesh),
-          .skin = std::move(skin),
-          .joint_from_rest = std::move(joint_from_rest),
-          .end_points = {{"tip_end", 2, {0, kTop - kTip, 0}}},
-          .height_m = kTop,
-          .weight_kg = 4 * kHalfWidth * kHalfWidth * kTop * 980,
-          .facts = {{"source", "made by hand"}}};
+  BodyModel body{.name = "tube",
+                 .skeleton = make_skeleton(),
+                 .rest = std::move(mesh),
+                 .skin = std::move(skin),
+                 .joint_from_rest = std::move(joint_from_rest),
+                 .end_points = {{"tip_end", 2, {0, kTop - kTip, 0}}},
+                 .height_m = kTop,
+                 .weight_kg = 4 * kHalfWidth * kHalfWidth * kTop * 980,
+                 .facts = {{"source", "made by hand"}}};
+  body.profile = default_profile(body);
+  body.profile.facing = Eigen::Vector3d::UnitZ();
+  return body;
 }
 
 }  // namespace silpose

@@ -1,5 +1,6 @@
 #include "silpose/evaluate/evaluation.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -12,11 +13,6 @@
 
 namespace silpose {
 namespace {
-
-constexpr std::array<const char*, 13> kEvaluatedJoints = {
-    "right_thigh",   "right_shin", "right_foot",     "left_thigh",   "left_shin", "left_foot", "right_upper_arm",
-    "right_forearm", "right_hand", "left_upper_arm", "left_forearm", "left_hand", "head_top"};
-constexpr size_t kRightHip = 0, kLeftHip = 3;  // hip joints, in the list above
 
 constexpr double kTimeSlack = 1e-6;  // times are written with six decimals
 
@@ -38,11 +34,11 @@ constexpr std::array<const char*, kNumFigures> kFigureNames = {
     "joint_error_aligned_mm", "joint_error_px", "visual_accuracy", "mask_iou"};
 
 using FrameFigures = std::array<std::optional<double>, kNumFigures>;
-using JointsOfFrame = std::array<const JointTable::Row*, kEvaluatedJoints.size()>;  // null where it is not there
+using JointsOfFrame = std::vector<const JointTable::Row*>;  // [landmarks of the profile]; null where it is not there
 
 // One side by frame number.
 struct Side {
-  explicit Side(const Recorded& recorded) {
+  Side(const Recorded& recorded, const RigProfile& profile) {
     if (recorded.poses) {
       for (const PoseTable::Row& row : recorded.poses->rows) {
         poses.emplace(row.frame, &row);
@@ -52,9 +48,9 @@ struct Side {
     if (!recorded.joints) return;
     for (const JointTable::Row& row : recorded.joints->rows) {
       times.emplace(row.frame, row.time_s);
-      JointsOfFrame& frame = joints.try_emplace(row.frame, JointsOfFrame{}).first->second;
-      for (size_t k = 0; k < kEvaluatedJoints.size(); ++k) {
-        if (row.joint == kEvaluatedJoints[k]) frame[k] = &row;
+      JointsOfFrame& frame = joints.try_emplace(row.frame, JointsOfFrame(profile.landmarks.size())).first->second;
+      for (size_t k = 0; k < frame.size(); ++k) {
+        if (row.joint == profile.landmarks[k].name) frame[k] = &row;
       }
     }
   }
@@ -80,9 +76,24 @@ void add_pose_errors(const Skeleton& skeleton, std::span<const double> pose, std
   figures[kAngleDeg] = angle_error_deg(skeleton, pose, truth);
 }
 
-void add_joint_errors(const JointsOfFrame& result, const JointsOfFrame& truth, FrameFigures& figures) {
+// The mean of the landmarks that are the profile's origin; nothing where one is missing.
+std::optional<Eigen::Vector3d> origin_of(const RigProfile& profile, const JointsOfFrame& joints) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::string& name : profile.origin) {
+    const auto landmark = std::ranges::find(profile.landmarks, name, &RigProfile::Landmark::name);
+    if (landmark == profile.landmarks.end()) return std::nullopt;
+    const JointTable::Row* const row = joints[static_cast<size_t>(landmark - profile.landmarks.begin())];
+    if (!row) return std::nullopt;
+    sum += row->x_in_world;
+  }
+  if (profile.origin.empty()) return std::nullopt;
+  return sum / static_cast<double>(profile.origin.size());
+}
+
+void add_joint_errors(const RigProfile& profile, const JointsOfFrame& result, const JointsOfFrame& truth,
+                      FrameFigures& figures) {
   std::vector<size_t> shared, seen;  // joints that both have, and have in the picture
-  for (size_t k = 0; k < kEvaluatedJoints.size(); ++k) {
+  for (size_t k = 0; k < result.size(); ++k) {
     if (!result[k] || !truth[k]) continue;
     shared.push_back(k);
     if (result[k]->pixel.allFinite() && truth[k]->pixel.allFinite()) seen.push_back(k);
@@ -97,12 +108,10 @@ void add_joint_errors(const JointsOfFrame& result, const JointsOfFrame& truth, F
   }
   figures[kJointMm] = kMmPerMetre * mean_distance(points, true_points);
   if (const auto aligned = aligned_distance(points, true_points)) figures[kJointAlignedMm] = kMmPerMetre * *aligned;
-  if (result[kRightHip] && truth[kRightHip] && result[kLeftHip] && truth[kLeftHip]) {
-    const auto middle = [](const JointsOfFrame& joints) -> Eigen::Vector3d {
-      return (joints[kRightHip]->x_in_world + joints[kLeftHip]->x_in_world) / 2;
-    };
+  const auto origin = origin_of(profile, result), true_origin = origin_of(profile, truth);
+  if (origin && true_origin) {
     figures[kJointRootMm] =
-        kMmPerMetre * mean_distance(points.colwise() - middle(result), true_points.colwise() - middle(truth));
+        kMmPerMetre * mean_distance(points.colwise() - *origin, true_points.colwise() - *true_origin);
   }
   if (!seen.empty()) {
     double sum = 0;
@@ -161,8 +170,9 @@ std::vector<int64_t> true_frames(const Recorded& truth, const Side& truth_side, 
 
 // Both sides by frame number, and the frames that both have.
 struct Sides {
-  Sides(const Recorded& result_recorded, const Recorded& truth_recorded, const EvaluateOptions& options)
-      : result(result_recorded), truth(truth_recorded) {
+  Sides(const Recorded& result_recorded, const Recorded& truth_recorded, const RigProfile& profile,
+        const EvaluateOptions& options)
+      : result(result_recorded, profile), truth(truth_recorded, profile) {
     check(options.start_s < options.end_s, "evaluate from {} to {} s", options.start_s, options.end_s);
     for (const int64_t frame : true_frames(truth_recorded, truth, result, options)) {
       const bool is_there = result.times.contains(frame) || result_recorded.mask_files.contains(frame);
@@ -191,7 +201,7 @@ Result<std::vector<FrameFigures>> frame_figures(const Recorded& result, const Re
       }
       const auto joints = sides.result.joints.find(frame), true_joints = sides.truth.joints.find(frame);
       if (joints != sides.result.joints.end() && true_joints != sides.truth.joints.end()) {
-        add_joint_errors(joints->second, true_joints->second, figures[i]);
+        add_joint_errors(body.profile, joints->second, true_joints->second, figures[i]);
         if (!see_the_same(result, truth)) figures[i][kJointPx].reset();
       }
       outcomes[i] = add_mask_figures(result, truth, body, frame, has_pose ? pose->second : nullptr, figures[i]);
@@ -230,7 +240,7 @@ std::vector<std::string> figure_names() { return {kFigureNames.begin(), kFigureN
 
 Result<std::vector<FrameEvaluation>> evaluate_frames(const Recorded& result, const Recorded& truth,
                                                      const BodyModel& body, const EvaluateOptions& options) {
-  const Sides sides(result, truth, options);
+  const Sides sides(result, truth, body.profile, options);
   const auto figures = frame_figures(result, truth, body, sides);
   if (!figures) return figures.failure();
   std::vector<FrameEvaluation> frames;
@@ -243,7 +253,7 @@ Result<std::vector<FrameEvaluation>> evaluate_frames(const Recorded& result, con
 
 Result<Evaluation> evaluate(const Recorded& result, const Recorded& truth, const BodyModel& body,
                             const EvaluateOptions& options) {
-  const Sides sides(result, truth, options);
+  const Sides sides(result, truth, body.profile, options);
   const auto figures = frame_figures(result, truth, body, sides);
   if (!figures) return figures.failure();
   Evaluation evaluation;

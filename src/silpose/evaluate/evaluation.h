@@ -1,6 +1,6 @@
 // Evaluation: how far a tracked result is from the truth, frame by frame, as mean and spread over frames.
-// Frames are matched by number; joint errors are over the twelve limb joints and head_top, or those the truth has.
-// Threads: values; evaluate() itself uses all cores and gives the same on any number.
+// Frames are matched by number; joint errors are over the landmarks of the rig (RigProfile), or those of them that the
+// truth has. Threads: values; evaluate() itself uses all cores and gives the same on any number.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct Recorded {
 
 // Reads poses.csv, joints.csv and camera.toml where they are there, and lists masks/000000.png ... (or, with several
 // cameras, masks_NAME/ of the first). Errors: no such directory, none of these in it, a broken file, a joint that is
-// neither a joint nor an end point of `body`.
+// neither a joint nor an end point of `body`; landmarks may have the names of OpenPose.
 Result<Recorded> read_recorded(const std::filesystem::path& directory, const BodyModel& body);
 
 struct EvaluateOptions {

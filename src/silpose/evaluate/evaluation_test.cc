@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 
+#include "silpose/body/human_profile.h"
 #include "silpose/body/test_body.h"
 #include "silpose/geometry/calibration_file.h"
 #include "silpose/image/image_file.h"
@@ -30,7 +31,13 @@ PoseTable::Row pose(int64_t frame, double tip_rx_deg) {
 }
 
 const BodyModel& body() {
-  static const BodyModel model = make_test_body();
+  static const BodyModel model = [] {
+    BodyModel tube = make_test_body();
+    const RigProfile human = human_profile(tube.skeleton);
+    tube.profile.landmarks = human.landmarks;
+    tube.profile.origin = human.origin;
+    return tube;
+  }();
   return model;
 }
 
@@ -118,6 +125,19 @@ TEST(Evaluate, JointErrorsByHand) {
   EXPECT_FALSE(evaluation.find("pose_error_deg").has_value());
 }
 
+TEST(Evaluate, ARigIsEvaluatedByItsOwnLandmarks) {
+  const BodyModel tube = make_test_body();  // root, middle, tip, tip_end, about the root
+  Recorded result, truth;
+  result.joints = truth.joints = JointTable{};
+  for (const auto& [name, off] : {std::pair{"root", 0.01}, {"middle", 0.02}, {"tip_end", 0.03}}) {
+    truth.joints->rows.push_back(joint(0, name, {0, 1, 0}));
+    result.joints->rows.push_back(joint(0, name, {off, 1, 0}));
+  }
+  const Evaluation evaluation = evaluate(result, truth, tube).value();
+  EXPECT_NEAR(evaluation.find("joint_error_mm")->mean, 20, 1e-9);
+  EXPECT_NEAR(evaluation.find("joint_error_root_mm")->mean, 10, 1e-9);
+}
+
 TEST(Evaluate, PicturesOfTwoCamerasAreNotCompared) {
   Recorded result, truth;
   truth.joints = JointTable{.rows = {joint(0, "left_hand", {0, 1, 1}, {100, 200})}};
@@ -192,6 +212,15 @@ TEST_F(EvaluateFiles, ATruthOfMasksAloneStillCounts) {
   EXPECT_EQ(evaluation.frames, 1);
   EXPECT_EQ(evaluation.frames_missing, 1);
   EXPECT_NEAR(evaluation.find("mask_iou")->mean, 1.0 / 3, 1e-12);
+}
+
+TEST_F(EvaluateFiles, LandmarksMayHaveTheNamesOfOpenPose) {
+  BodyModel tube = make_test_body();
+  tube.profile.landmarks[1].other_names = {{"openpose", "MidHip"}};
+  std::ofstream(directory_ / "truth" / "joints.csv") << "frame,time_s,joint,x_m,y_m,z_m\n7,0,MidHip,1,2,3\n";
+  const Recorded truth = read_recorded(directory_ / "truth", tube).value();
+  ASSERT_EQ(truth.joints->rows.size(), 1U);
+  EXPECT_EQ(truth.joints->rows[0].joint, "middle");
 }
 
 TEST_F(EvaluateFiles, NamesWhatIsWrong) {

@@ -43,7 +43,8 @@ Result<Recorded> read_recorded(const fs::path& directory, const BodyModel& body)
     auto joints = read_joints(path);
     if (!joints) return joints.failure();
     const std::vector<std::string> known = landmark_names(body);
-    for (const JointTable::Row& row : joints->rows) {
+    for (JointTable::Row& row : joints->rows) {
+      if (const auto own = body.profile.landmark_called(row.joint, "openpose"); !own.empty()) row.joint = own;
       if (std::find(known.begin(), known.end(), row.joint) == known.end()) {
         return error("{}: frame {}: unknown joint '{}'", path.string(), row.frame, row.joint);
       }

@@ -197,8 +197,23 @@ Skeleton small_skeleton() {
   return Skeleton("small", std::move(joints), std::move(dofs));
 }
 
-TEST_F(Bvh, WrittenPosesComeBackWithinATenthOfAMillimetre) {
+// small_skeleton() whose joints have axes of their own at rest.
+Skeleton turned_skeleton() {
   const Skeleton skeleton = small_skeleton();
+  std::vector<Joint> joints(skeleton.joints().begin(), skeleton.joints().end());
+  for (size_t j = 0; j < joints.size(); ++j) {
+    const double angle = 0.4 + 0.7 * static_cast<double>(j);
+    joints[j].parent_from_rest = Eigen::AngleAxisd(angle, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  }
+  return Skeleton("turned", std::move(joints), {skeleton.dofs().begin(), skeleton.dofs().end()});
+}
+
+class BvhOfRig : public Bvh, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(Axes, BvhOfRig, testing::Bool(),
+                         [](const auto& param) { return param.param ? "OfItsOwn" : "OfTheWorld"; });
+
+TEST_P(BvhOfRig, WrittenPosesComeBackWithinATenthOfAMillimetre) {
+  const Skeleton skeleton = GetParam() ? turned_skeleton() : small_skeleton();
   Rng rng(7);
   std::vector<std::vector<double>> poses;
   for (int frame = 0; frame < 300; ++frame) {

@@ -14,6 +14,7 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/base/text_file.h"
+#include "silpose/body/rigs_for_test.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
@@ -74,8 +75,13 @@ class Glb : public testing::Test {
   Assimp::Importer importer_;
 };
 
-TEST_F(Glb, AnotherReaderPosesTheMeshAsWeDo) {
-  const BodyModel body = make_test_body();
+// The world's axes in every joint at rest, and a rig that has its own.
+class GlbOfRig : public Glb, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(Axes, GlbOfRig, testing::Bool(),
+                         [](const auto& param) { return param.param ? "OfItsOwn" : "OfTheWorld"; });
+
+TEST_P(GlbOfRig, AnotherReaderPosesTheMeshAsWeDo) {
+  const BodyModel body = GetParam() ? make_rotations_first_body() : make_test_body();
   const PoseTable poses = random_poses(body.skeleton, 12);
   ASSERT_TRUE(write_glb(path_, body, poses).ok());
   const aiScene* scene = read();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "silpose/body/human_profile.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
@@ -24,8 +25,10 @@ BodyModel make_leg() {
   };
   std::vector<Dof> dofs = {{.name = "root_tx", .joint_idx = 0, .is_translation = true, .lower = -10, .upper = 10},
                            {.name = "right_shin_rx", .joint_idx = 2, .lower = 0, .upper = 3}};
-  return {
+  BodyModel body{
       .name = "leg", .skeleton = Skeleton("leg", std::move(joints), std::move(dofs)), .joint_from_rest = {5, Rigid3()}};
+  body.profile = human_profile(body.skeleton);
+  return body;
 }
 
 // The true leg is bent by 30 degrees in all frames.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "silpose/base/check.h"
 #include "silpose/body/point_motion.h"
 #include "silpose/shape/keypoint_axes.h"
 
@@ -22,9 +23,8 @@ constexpr double kLeastVisible = 0.5;  // [guess] keypoints of a lower visibilit
 // [guess] Squared deviations that a point behind the camera counts as. 100 deviations are about the diagonal of the
 // image for a body half as tall as it.
 constexpr double kBehind = 1e4;
-constexpr double kShortest_m = 0.05;   // [guess] a segment that the network sees shorter than this has no direction
-constexpr double kSquarePerArea = 10;  // [guess] the squared height of an upright body over its area, in most poses
-constexpr size_t kFewestSeen = 6;      // [guess] keypoints that determine the pose of a whole body
+constexpr double kShortest_m = 0.05;  // [guess] a segment that the network sees shorter than this has no direction
+constexpr size_t kFewestSeen = 6;     // [guess] keypoints that determine the pose of a whole body
 
 // Cost of a residual of that many squared deviations, and its derivative.
 double cost_of(double weight, double squared) { return weight * (kFreedom + 2) * std::log1p(squared / kFreedom); }
@@ -39,7 +39,8 @@ bool KeypointTerm::determines_pose() const { return num_seen_ >= kFewestSeen; }
 KeypointTerm::KeypointTerm(const BodyModel& body, const PinholeCamera& camera, const Observation& observation,
                            const KeypointWeights& weights)
     : camera_(camera) {
-  const double height_px = std::sqrt(kSquarePerArea * static_cast<double>(observation.mask.count()));
+  check(body.profile.silhouette_area > 0, "KeypointTerm: the area of the body's silhouettes is not known");
+  const double height_px = std::sqrt(1 / body.profile.silhouette_area * static_cast<double>(observation.mask.count()));
   deviation_px_ = std::max(1.0, kPlaceDeviation * height_px);
   add_places(body, observation, weights.places);
   if (weights.directions > 0 && !observation.keypoints_3d.empty()) {
@@ -49,6 +50,8 @@ KeypointTerm::KeypointTerm(const BodyModel& body, const PinholeCamera& camera, c
 
 std::optional<size_t> KeypointTerm::point_of(const BodyModel& body, std::string_view name) {
   Point point;
+  // Rigs whose landmarks have the network's own names need not list them.
+  if (const std::string_view own = body.profile.landmark_called(name, "keypoints"); !own.empty()) name = own;
   if (const std::optional<int> joint = body.skeleton.find_joint(name)) {
     point.joint_idx = *joint;
   } else {
@@ -100,7 +103,8 @@ void KeypointTerm::add_directions(const BodyModel& body, const Keypoints3D& keyp
     direction.weight = weight * visibility;
     directions_.push_back(std::move(direction));
   };
-  const std::string hips[] = {"right_thigh", "left_thigh"}, shoulders[] = {"right_upper_arm", "left_upper_arm"};
+  const std::string hips[] = {std::string(kHipKeypoints.right), std::string(kHipKeypoints.left)},
+                    shoulders[] = {std::string(kShoulderKeypoints.right), std::string(kShoulderKeypoints.left)};
   const std::span all_hips(hips), all_shoulders(shoulders);
   add(all_hips, all_shoulders, kTrunkError, Vector3d::Zero());
   add(all_hips.first(1), all_hips.last(1), kHipsError, Vector3d::Zero());

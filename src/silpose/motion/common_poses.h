@@ -1,5 +1,5 @@
-// CommonPoses: a proposal that ignores the observation: the poses in which people are most often seen, facing each of
-// eight directions. For starting a track.
+// CommonPoses: a proposal that ignores the observation: the poses in which the rig is most often seen (its profile's),
+// facing each of eight directions. For starting a track.
 // Source: cormier2019 sect. 2.4.1 (starting from known common poses).
 // Threads: as Proposal.
 #pragma once
@@ -7,16 +7,16 @@
 #include <string>
 #include <vector>
 
-#include "silpose/body/skeleton.h"
+#include "silpose/body/rig_profile.h"
 #include "silpose/motion/proposal.h"
 
 namespace silpose {
 
 class CommonPoses final : public Proposal {
  public:
-  // Poses are defined by the DOF names of the human; DOF that a skeleton lacks are left out, poses that then are equal
-  // are given once, and without root_ry there is one heading.
-  explicit CommonPoses(const Skeleton& skeleton);
+  // Poses that are equal within the limits are given once; a rig without heading has one direction.
+  // Errors: throws std::invalid_argument for a profile without poses, or of another skeleton.
+  CommonPoses(const Skeleton& skeleton, const RigProfile& profile);
 
   // The root's translation is 0. If fewer are requested than exist: a random choice without repetition.
   [[nodiscard]] StateBatch propose(const Observation& observation, int num_candidates, Rng& rng) const override;

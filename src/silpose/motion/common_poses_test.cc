@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "silpose/body/human.h"
+#include "silpose/body/human_profile.h"
+#include "silpose/body/rigs_for_test.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
@@ -38,7 +40,7 @@ class CommonPosesTest : public testing::Test {
     return joints[static_cast<size_t>(*skeleton_.find_joint(joint_name))].translation;
   }
   Skeleton skeleton_ = stick_figure();
-  CommonPoses poses_{skeleton_};
+  CommonPoses poses_{skeleton_, human_profile(skeleton_)};
 };
 
 TEST_F(CommonPosesTest, FaceEightDirections) {
@@ -113,10 +115,16 @@ TEST_F(CommonPosesTest, ProposesAllOrAChoiceWithoutRepetition) {
   EXPECT_THROW((void)poses_.propose({}, -1, rng), std::invalid_argument);
 }
 
-TEST(CommonPoses, OfAStrangeSkeletonAreItsHeadings) {
-  const CommonPoses poses(make_test_body().skeleton);
-  EXPECT_EQ(poses.poses().rows(), 8);
+TEST(CommonPoses, OfAnotherRigAreItsProfilesAtEachHeading) {
+  const BodyModel tube = make_test_body(), chain = make_chain_body();
+  const CommonPoses poses(tube.skeleton, tube.profile), fixed(chain.skeleton, chain.profile);
+  EXPECT_EQ(poses.poses().rows(), static_cast<Eigen::Index>(8 * tube.profile.poses.size()));
   EXPECT_EQ(poses.poses().cols(), 8);
+  EXPECT_EQ(poses.names().front(), "rest");
+  EXPECT_EQ(fixed.poses().rows(), static_cast<Eigen::Index>(chain.profile.poses.size()));
+  EXPECT_THROW(CommonPoses(tube.skeleton, RigProfile{}), std::invalid_argument);
+  EXPECT_THROW(CommonPoses(human_skeleton(std::vector<Eigen::Vector3d>(20, Eigen::Vector3d::Zero())), tube.profile),
+               std::invalid_argument);
 }
 
 }  // namespace

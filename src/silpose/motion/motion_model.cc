@@ -19,8 +19,8 @@ constexpr double kVelocityShare = 0.5;
 
 class Diffusion final : public MotionModel {
  public:
-  Diffusion(Skeleton skeleton, const MotionOptions& options)
-      : skeleton_(std::move(skeleton)), deviation_(noise_deviation(skeleton_, options.sigma_deg)) {}
+  Diffusion(Skeleton skeleton, const RigProfile& profile, const MotionOptions& options)
+      : skeleton_(std::move(skeleton)), deviation_(noise_deviation(profile, options.sigma_deg)) {}
 
   int state_size() const override { return skeleton_.num_dofs(); }
   StateBatch states_from_poses(const StateBatch& poses) const override {
@@ -58,11 +58,11 @@ class Diffusion final : public MotionModel {
 
 class FirstOrderAugmented final : public MotionModel {
  public:
-  FirstOrderAugmented(Skeleton skeleton, const MotionOptions& options)
+  FirstOrderAugmented(Skeleton skeleton, const RigProfile& profile, const MotionOptions& options)
       : skeleton_(std::move(skeleton)),
         num_dofs_(static_cast<size_t>(skeleton_.num_dofs())),
         velocity_decay_per_s_(options.velocity_decay_per_s),
-        deviation_(noise_deviation(skeleton_, options.sigma_deg)) {
+        deviation_(noise_deviation(profile, options.sigma_deg)) {
     check(std::isfinite(velocity_decay_per_s_) && velocity_decay_per_s_ >= 0, "first order: velocity decay of {} 1/s",
           velocity_decay_per_s_);
     for (size_t d = 0; d < num_dofs_; ++d) deviation_.push_back(kVelocityShare * deviation_[d] / kNoiseInterval_s);
@@ -129,7 +129,7 @@ class FirstOrderAugmented final : public MotionModel {
   void stop_at_limits(std::span<const double> x, std::span<double> v) const {
     const std::span<const Dof> dofs = skeleton_.dofs();
     for (size_t d = 0; d < num_dofs_; ++d) {
-      if (dofs[d].is_translation || dofs[d].is_periodic) continue;
+      if (!dofs[d].has_limits()) continue;
       if (x[d] <= dofs[d].lower) v[d] = std::max(v[d], 0.0);
       if (x[d] >= dofs[d].upper) v[d] = std::min(v[d], 0.0);
     }
@@ -143,12 +143,12 @@ class FirstOrderAugmented final : public MotionModel {
 
 struct NamedModel {
   std::string_view name;
-  std::unique_ptr<MotionModel> (*make)(const Skeleton& skeleton, const MotionOptions& options);
+  std::unique_ptr<MotionModel> (*make)(const Skeleton& skeleton, const RigProfile& profile, const MotionOptions& options);
 };
 
 template <class Model>
-std::unique_ptr<MotionModel> make(const Skeleton& skeleton, const MotionOptions& options) {
-  return std::make_unique<Model>(skeleton, options);
+std::unique_ptr<MotionModel> make(const Skeleton& skeleton, const RigProfile& profile, const MotionOptions& options) {
+  return std::make_unique<Model>(skeleton, profile, options);
 }
 
 constexpr std::array kModels = {NamedModel{"diffusion", make<Diffusion>},
@@ -164,10 +164,11 @@ constexpr auto kNames = [] {
 std::span<const std::string_view> motion_model_names() { return kNames; }
 
 Result<std::unique_ptr<MotionModel>> make_motion_model(const std::string& name, const Skeleton& skeleton,
-                                                       const MotionOptions& options) {
+                                                       const RigProfile& profile, const MotionOptions& options) {
+  check_profile(profile, skeleton);
   const auto model = std::ranges::find(kModels, name, &NamedModel::name);
   if (model == kModels.end()) return error("motion '{}': not one of {}", name, fmt::join(kNames, ", "));
-  return model->make(skeleton, options);
+  return model->make(skeleton, profile, options);
 }
 
 }  // namespace silpose

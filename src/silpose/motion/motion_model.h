@@ -57,9 +57,10 @@ class MotionModel {
 // The names that make_motion_model() knows.
 std::span<const std::string_view> motion_model_names();
 
-// A model of a skeleton by its name on the command line; it keeps a copy of the skeleton.
-// Errors: an unknown name. Throws std::invalid_argument for options out of range.
+// A model of a rig by its name on the command line; it keeps a copy of the skeleton.
+// Errors: an unknown name. Throws std::invalid_argument for options out of range, and for a profile of another
+// skeleton.
 Result<std::unique_ptr<MotionModel>> make_motion_model(const std::string& name, const Skeleton& skeleton,
-                                                       const MotionOptions& options = {});
+                                                       const RigProfile& profile, const MotionOptions& options = {});
 
 }  // namespace silpose

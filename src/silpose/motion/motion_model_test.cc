@@ -8,6 +8,7 @@
 
 #include "silpose/base/parallel.h"
 #include "silpose/body/human.h"
+#include "silpose/body/human_profile.h"
 #include "silpose/body/test_body.h"
 #include "silpose/filter/estimate.h"
 
@@ -18,6 +19,8 @@ Skeleton human() {
   const std::vector<Eigen::Vector3d> centres(20, Eigen::Vector3d::Zero());
   return human_skeleton(centres);
 }
+
+RigProfile profile_of(const Skeleton& skeleton) { return human_profile(skeleton); }
 
 StateBatch copies(const std::vector<double>& pose, int num_particles) {
   StateBatch poses(num_particles, static_cast<Eigen::Index>(pose.size()));
@@ -44,7 +47,7 @@ bool within_limits(const Skeleton& skeleton, const StateBatch& states) {
 class MotionModelContract : public testing::TestWithParam<const char*> {
  protected:
   Skeleton skeleton_ = human();
-  std::unique_ptr<MotionModel> model_ = make_motion_model(GetParam(), skeleton_).value();
+  std::unique_ptr<MotionModel> model_ = make_motion_model(GetParam(), skeleton_, profile_of(skeleton_)).value();
 };
 
 TEST_P(MotionModelContract, StatesStartWithThePose) {
@@ -129,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(All, MotionModelContract, testing::Values("diffusion", 
 
 TEST(Diffusion, HasTheDeviationOfItsNoiseAndNoDrift) {
   const Skeleton skeleton = human();
-  const auto model = make_motion_model("diffusion", skeleton).value();
+  const auto model = make_motion_model("diffusion", skeleton, profile_of(skeleton)).value();
   const std::vector<double> start = middle(skeleton);
   StateBatch states = model->states_from_poses(copies(start, 20000));
   model->propagate(states, 4.0 / 30, 1, 1);  // four frames: twice the deviation
@@ -144,7 +147,7 @@ TEST(Diffusion, HasTheDeviationOfItsNoiseAndNoDrift) {
 
 TEST(Diffusion, WrapsHeadings) {
   const Skeleton skeleton = human();
-  const auto model = make_motion_model("diffusion", skeleton).value();
+  const auto model = make_motion_model("diffusion", skeleton, profile_of(skeleton)).value();
   std::vector<double> pose(37, 0.0);
   const int heading = *skeleton.find_dof("root_ry");
   pose[static_cast<size_t>(heading)] = to_radians(179);
@@ -161,7 +164,8 @@ TEST(Diffusion, WrapsHeadings) {
 // eq. 2.18 without noise to speak of.
 TEST(FirstOrderAugmented, MovesByItsVelocity) {
   const Skeleton skeleton = human();
-  const auto model = make_motion_model("first-order-augmented", skeleton, {.sigma_deg = 1e-9}).value();
+  const auto model =
+      make_motion_model("first-order-augmented", skeleton, profile_of(skeleton), {.sigma_deg = 1e-9}).value();
   const int shin = *skeleton.find_dof("right_shin_rx"), heading = *skeleton.find_dof("root_ry");
   StateBatch states = model->states_from_poses(copies(std::vector(37, 0.0), 1));
   states(0, 37 + shin) = to_radians(100);  // per second
@@ -178,52 +182,49 @@ TEST(FirstOrderAugmented, MovesByItsVelocity) {
 
 TEST(FirstOrderAugmented, VelocityDecays) {
   const Skeleton skeleton = make_test_body().skeleton;
-  const auto model =
-      make_motion_model("first-order-augmented", skeleton, {.sigma_deg = 1e-9, .velocity_decay_per_s = 2}).value();
+  const auto model = make_motion_model("first-order-augmented", skeleton, profile_of(skeleton),
+                                       {.sigma_deg = 1e-9, .velocity_decay_per_s = 2})
+                         .value();
   StateBatch states = StateBatch::Zero(1, 16);
   states(0, 8) = 1;
   for (uint64_t step = 0; step < 50; ++step) model->propagate(states, 0.01, 1, step);
   EXPECT_NEAR(states(0, 8), std::exp(-1.0), 1e-9);
-  EXPECT_THROW((void)make_motion_model("first-order-augmented", skeleton, {.velocity_decay_per_s = -1}),
-               std::invalid_argument);
+  EXPECT_THROW(
+      (void)make_motion_model("first-order-augmented", skeleton, profile_of(skeleton), {.velocity_decay_per_s = -1}),
+      std::invalid_argument);
 }
 
-TEST(Noise, OfTheHumanIsFromTheTable) {
-  const Skeleton skeleton = human();
-  const std::vector<double> deviation = noise_deviation(skeleton);
-  const auto of = [&](const char* name) { return deviation[static_cast<size_t>(*skeleton.find_dof(name))]; };
-  EXPECT_DOUBLE_EQ(of("root_tx"), 0.020);
-  EXPECT_DOUBLE_EQ(of("root_ty"), 0.010);
-  EXPECT_DOUBLE_EQ(of("root_ry"), to_radians(2));
-  EXPECT_DOUBLE_EQ(of("left_shin_rx"), to_radians(5));
-  for (const Dof& dof : skeleton.dofs()) {
-    if (!dof.name.starts_with("right_")) continue;
-    EXPECT_EQ(of(dof.name.c_str()), of(("left_" + dof.name.substr(6)).c_str())) << dof.name;
-  }
+// A joint on a rail stays on it, and stops at its end.
+TEST(FirstOrderAugmented, BoundedTranslationsStopAtTheirLimits) {
+  const Dof rail{.name = "rail", .is_translation = true, .lower = -0.1, .upper = 0.2, .is_bounded = true};
+  const Skeleton skeleton("s", {{.name = "root", .dof_indices = {0}}}, {rail});
+  const auto model =
+      make_motion_model("first-order-augmented", skeleton, tree_profile(skeleton), {.sigma_deg = 1e-9}).value();
+  StateBatch states = StateBatch::Zero(1, 2);
+  states(0, 1) = 1;
+  for (uint64_t step = 0; step < 5; ++step) model->propagate(states, 0.1, 1, step);
+  EXPECT_EQ(states(0, 0), 0.2);
+  EXPECT_NEAR(states(0, 1), 0, 1e-9);
 }
 
-TEST(Noise, ScalesWithSigmaAndFitsAnySkeleton) {
-  const Skeleton skeleton = make_test_body().skeleton;
-  const std::vector<double> deviation = noise_deviation(skeleton),
-                            half = noise_deviation(skeleton, kTypicalSigmaDeg / 2);
-  ASSERT_EQ(deviation.size(), 8u);
-  for (size_t d = 0; d < 8; ++d) {
-    EXPECT_GT(deviation[d], 0);
-    EXPECT_NEAR(half[d], deviation[d] / 2, 1e-12);
-  }
-  for (size_t d = 4; d < 8; ++d) {
-    EXPECT_GE(deviation[d], to_radians(1) - 1e-12);
-    EXPECT_LE(deviation[d], to_radians(5) + 1e-12);
-  }
-  EXPECT_THROW((void)noise_deviation(skeleton, 0), std::invalid_argument);
-  EXPECT_THROW((void)noise_deviation(skeleton, std::nan("")), std::invalid_argument);
+TEST(Noise, ScalesWithSigma) {
+  const RigProfile profile = make_test_body().profile;
+  const std::vector<double> deviation = noise_deviation(profile), half = noise_deviation(profile, kTypicalSigmaDeg / 2);
+  EXPECT_EQ(deviation, profile.noise);
+  for (size_t d = 0; d < 8; ++d) EXPECT_EQ(half[d], deviation[d] / 2);
+  EXPECT_THROW((void)noise_deviation(profile, 0), std::invalid_argument);
+  EXPECT_THROW((void)noise_deviation(profile, std::nan("")), std::invalid_argument);
+}
+
+TEST(MakeMotionModel, RefusesTheProfileOfAnotherRig) {
+  EXPECT_THROW((void)make_motion_model("diffusion", human(), make_test_body().profile), std::invalid_argument);
 }
 
 TEST(MakeMotionModel, NamesWhatItDoesNotKnow) {
   const Skeleton skeleton = human();
   for (const char* name :
        {"wobble", "first-order", "first-order-filter", "second-order", "knn", "transition", "physics"}) {
-    const auto model = make_motion_model(name, skeleton);
+    const auto model = make_motion_model(name, skeleton, profile_of(skeleton));
     ASSERT_FALSE(model.ok()) << name;
     EXPECT_EQ(model.error().message, std::string("motion '") + name + "': not one of diffusion, first-order-augmented");
   }

@@ -93,7 +93,7 @@ JointTable joint_table(const TrackRecording& recording, const BodyModel& body, c
     check(step.landmark_spread.size() == positions.size(), "joint_table: {} spreads for {} landmarks",
           step.landmark_spread.size(), positions.size());
     for (size_t i = 0; i < positions.size(); ++i) {
-      if (i >= num_joints && names[i] != "head_top") continue;
+      if (i >= num_joints && !body.profile.has_landmark(names[i])) continue;
       constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
       table.rows.push_back({.frame = step.frame_idx,
                             .time_s = seconds(step),

@@ -45,7 +45,7 @@ std::string_view state_name(StepReport::State state);
 PoseTable pose_table(const TrackRecording& recording);
 PoseTable normalised_pose_table(const TrackRecording& recording, const Skeleton& skeleton);
 PoseTable spread_table(const TrackRecording& recording);
-// Every joint and head_top, with its pixel in `camera` and its spread.
+// Every joint, and the end points that are landmarks of the rig, with its pixel in `camera` and its spread.
 JointTable joint_table(const TrackRecording& recording, const BodyModel& body, const PinholeCamera& camera);
 
 // Every joint and end point as a marker, one row per frame; without positions where the body was not compared with a

@@ -7,7 +7,7 @@
 namespace silpose {
 namespace {
 
-// One bone that hangs from the root, with its tip as head_top.
+// One bone that hangs from the root; of its two ends one is a landmark.
 BodyModel stick() {
   Joint root{.name = "root", .dof_indices = {0, 1}};
   Dof rise{.name = "root_ty", .is_translation = true, .axis = Eigen::Vector3d::UnitY(), .lower = -2, .upper = 2};
@@ -15,6 +15,7 @@ BodyModel stick() {
   BodyModel body{.name = "stick", .skeleton = Skeleton("stick", {root}, {rise, turn})};
   body.joint_from_rest = {Rigid3{}};
   body.end_points = {{"head_top", 0, {0, 1, 0}}, {"toe", 0, {0, -1, 0}}};
+  body.profile.landmarks = {{"head_top"}};
   return body;
 }
 
@@ -43,7 +44,7 @@ TEST(TrackRecording, TablesLeaveOutFramesWithoutPose) {
   EXPECT_EQ(normalised_pose_table(recording, stick().skeleton).rows[0].values, (std::vector<double>{0.75, 0.75}));
 }
 
-TEST(TrackRecording, JointsAreJointsAndHeadTopInWorldAndPicture) {
+TEST(TrackRecording, JointsAreJointsAndLandmarksInWorldAndPicture) {
   const TrackRecording recording{"stick", {step(0, {1, kPi / 2}, State::kTracked)}};
   const PinholeCamera camera = look_at_camera(100, 100, 100, {0, 1, 5}, {0, 1, 0});
   const JointTable joints = joint_table(recording, stick(), camera);

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
-#include <string_view>
 
 #include "silpose/base/check.h"
+#include "silpose/body/rig_profile.h"
 #include "silpose/image/image.h"
 #include "silpose/render/colour.h"
 
@@ -37,10 +37,10 @@ inline cv::Point fixed_point(const Eigen::Vector2d& pixel) {
 
 inline cv::Scalar scalar_of(Colour colour) { return {double(colour[0]), double(colour[1]), double(colour[2])}; }
 
-// Of what belongs to a landmark or joint of that name: left blue, right orange, the rest white.
-inline Colour colour_of(std::string_view landmark) {
-  if (landmark.starts_with("left_")) return {255, 150, 40};
-  if (landmark.starts_with("right_")) return {30, 140, 255};
+// Of parts of a body: left blue, right orange, the rest white.
+inline Colour colour_of(BodySide side) {
+  if (side == BodySide::kLeft) return {255, 150, 40};
+  if (side == BodySide::kRight) return {30, 140, 255};
   return {245, 245, 245};
 }
 

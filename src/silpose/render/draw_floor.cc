@@ -1,10 +1,8 @@
 #include "silpose/render/draw_floor.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <string>
 
 #include "silpose/base/check.h"
 #include "silpose/render/canvas.h"
@@ -28,17 +26,14 @@ void draw_line(cv::Mat& canvas, const std::vector<Eigen::Vector2d>& pixels, Colo
   cv::polylines(canvas, points, false, scalar_of(colour), width, cv::LINE_AA, kFractionBits);
 }
 
-bool is_foot(std::string name) {
-  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-  return name.find("foot") != std::string::npos;
-}
-
-// For each joint the foot it belongs to: its nearest ancestor, or itself, with "foot" in its name; -1: none.
-std::vector<int> foot_of_joints(const Skeleton& skeleton) {
+// For each joint the foot it belongs to: the outermost contact joint among its ancestors and itself; -1: none.
+std::vector<int> foot_of_joints(const BodyModel& body) {
   std::vector<int> foot_of;
-  for (const Joint& joint : skeleton.joints()) {
+  for (const Joint& joint : body.skeleton.joints()) {
+    const int j = static_cast<int>(foot_of.size());
     const int above = joint.parent_idx < 0 ? -1 : foot_of[static_cast<size_t>(joint.parent_idx)];
-    foot_of.push_back(above >= 0 ? above : is_foot(joint.name) ? static_cast<int>(foot_of.size()) : -1);
+    const bool is_foot = std::ranges::count(body.profile.contact_joints, j) > 0;
+    foot_of.push_back(above >= 0 ? above : is_foot ? j : -1);
   }
   return foot_of;
 }
@@ -79,7 +74,7 @@ void draw_floor(ByteImage& picture, const PinholeCamera& camera, const Eigen::Ve
 }
 
 std::vector<Footprint> footprints(const BodyModel& body, std::span<const double> pose) {
-  const std::vector<int> foot_of = foot_of_joints(body.skeleton);
+  const std::vector<int> foot_of = foot_of_joints(body);
   const std::vector<Eigen::Vector3f> vertices = skin_vertices(body, pose);
   const std::vector<int> main_joint = main_joints(body);
   std::vector<std::vector<Eigen::Vector3f>> points(foot_of.size());  // by foot
@@ -90,7 +85,7 @@ std::vector<Footprint> footprints(const BodyModel& body, std::span<const double>
   std::vector<Footprint> result;
   for (size_t foot = 0; foot < points.size(); ++foot) {
     if (points[foot].size() < 3) continue;
-    Footprint print{.joint = body.skeleton.joints()[foot].name};
+    Footprint print{.joint_idx = static_cast<int>(foot)};
     std::vector<cv::Point2f> floor_points, hull;
     for (const Eigen::Vector3f& point : points[foot]) floor_points.emplace_back(point.x(), point.z());
     cv::convexHull(floor_points, hull);
@@ -109,7 +104,7 @@ void draw_footprints(ByteImage& picture, const BodyModel& body, const PinholeCam
   const SegmentProjector project(camera);
   const int width = line_width(picture);
   for (const Footprint& print : footprints(body, pose)) {
-    const Colour colour = colour_of(print.joint);
+    const Colour colour = colour_of(side_of(body.profile, body.skeleton, print.joint_idx));
     const size_t corners = print.outline.size();
     std::vector<cv::Point> area;
     for (size_t i = 0; i < corners; ++i) {

@@ -22,12 +22,12 @@ void draw_floor(ByteImage& picture, const PinholeCamera& camera, const Eigen::Ve
 
 // What a foot would print on the floor if it were pressed straight down.
 struct Footprint {
-  std::string joint;                     // whose foot
+  int joint_idx = 0;                     // whose foot
   std::vector<Eigen::Vector2d> outline;  // x, z in metres: convex, at least a triangle
   Eigen::Vector3d lowest;                // point of the foot, world
 };
 
-// Of every joint with "foot" in its name, the mesh below it in the skeleton included.
+// Of every contact joint of the rig's profile, the mesh below it in the skeleton included.
 [[nodiscard]] std::vector<Footprint> footprints(const BodyModel& body, std::span<const double> pose);
 
 // The footprints of a posed body on the floor: left ones blue, right ones orange, filled while the foot is within 2 cm

@@ -79,9 +79,8 @@ TEST_F(DrawFloorTest, AFootprintIsBelowItsFootAndAsLong) {
   std::vector<double> pose = standing_pose(human);
   const auto standing = footprints(human, pose);
   ASSERT_EQ(standing.size(), 2);
-  EXPECT_EQ(standing[0].joint, "right_foot");
+  EXPECT_EQ(human.skeleton.joints()[static_cast<size_t>(standing[0].joint_idx)].name, "right_foot");
   EXPECT_NEAR(standing[0].lowest.y(), 0, 0.01);
-  const std::vector<std::string> names = landmark_names(human);
   const std::vector<Eigen::Vector3d> landmarks = landmark_positions(human, pose);
   for (const Footprint& print : standing) {
     Eigen::Array2d least = Eigen::Array2d::Constant(9), most = -least;
@@ -89,8 +88,7 @@ TEST_F(DrawFloorTest, AFootprintIsBelowItsFootAndAsLong) {
       least = least.min(corner.array()), most = most.max(corner.array());
     EXPECT_NEAR(most.y() - least.y(), 0.26, 0.06) << "length";
     EXPECT_NEAR(most.x() - least.x(), 0.11, 0.05) << "width";
-    const auto ankle =
-        landmarks[static_cast<size_t>(std::find(names.begin(), names.end(), print.joint) - names.begin())];
+    const Eigen::Vector3d& ankle = landmarks[static_cast<size_t>(print.joint_idx)];
     EXPECT_TRUE(ankle.x() > least.x() && ankle.x() < most.x() && ankle.z() > least.y() && ankle.z() < most.y());
   }
   pose[static_cast<size_t>(*human.skeleton.find_dof("root_ty_m"))] += 0.3;

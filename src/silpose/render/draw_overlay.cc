@@ -21,9 +21,13 @@ void draw_outline(ByteImage& picture, const Mask& mask, Colour colour) {
 
 void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {
   cv::Mat canvas = canvas_of(picture);
-  const std::vector<std::string> names = landmark_names(body);
   const std::vector<Eigen::Vector3d> positions = landmark_positions(body, pose);
   const auto joints = body.skeleton.joints();
+  std::vector<Colour> colours;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    const int joint = i < joints.size() ? static_cast<int>(i) : body.end_points[i - joints.size()].joint_idx;
+    colours.push_back(colour_of(side_of(body.profile, body.skeleton, joint)));
+  }
   const auto parent_of = [&](size_t landmark) {
     return landmark < joints.size() ? joints[landmark].parent_idx : body.end_points[landmark - joints.size()].joint_idx;
   };
@@ -35,7 +39,7 @@ void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& 
       if (parent < 0) continue;
       const auto from = camera.project(positions[static_cast<size_t>(parent)]), to = camera.project(positions[i]);
       if (!from || !to) continue;
-      const cv::Scalar colour = is_edge ? cv::Scalar(20, 20, 20) : scalar_of(colour_of(names[i]));
+      const cv::Scalar colour = is_edge ? cv::Scalar(20, 20, 20) : scalar_of(colours[i]);
       const int extra = is_edge ? 2 : 0;
       cv::line(canvas, fixed_point(*from), fixed_point(*to), colour, width + extra, cv::LINE_AA, kFractionBits);
       cv::circle(canvas, fixed_point(*to), (2 * width + extra) << (kFractionBits - 1), colour, cv::FILLED, cv::LINE_AA,

@@ -22,6 +22,13 @@ inline constexpr DirectionError kTrunkError = {.06, .18};      // middle of the 
 inline constexpr DirectionError kHipsError = {.12, .15};       // from hip to hip
 inline constexpr DirectionError kShouldersError = {.10, .12};  // from shoulder to shoulder
 
+// What the network calls the keypoints of the hips and the shoulders.
+struct KeypointPair {
+  std::string_view right, left;
+};
+inline constexpr KeypointPair kHipKeypoints = {"right_thigh", "left_thigh"},
+                              kShoulderKeypoints = {"right_upper_arm", "left_upper_arm"};
+
 // A segment from one keypoint to another, both without their side; `forward_bias` of its unit vector lies too far
 // forward, in the subject's own frame. [measured on the same]
 struct LimbSegment {

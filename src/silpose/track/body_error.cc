@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "silpose/body/stretchable.h"
-#include "silpose/motion/noise.h"
 
 namespace silpose {
 namespace {
@@ -35,8 +34,8 @@ double wrongness(const CoverageEvidence& evidence) {
 BodyError::BodyError(const BodyModel& body, std::vector<PinholeCamera> cameras, double size_deviation)
     : size_deviation_(size_deviation) {
   auto stretched = std::make_shared<const BodyModel>(stretchable(body));
-  deviation_ = pose_deviation(body.skeleton);
-  seen_deviation_ = pose_deviation(body.skeleton, true);
+  deviation_ = body.profile.rest;
+  seen_deviation_ = body.profile.rest_if_seen;
   lengths_ = stretch_covariance(stretched->skeleton);
   likelihood_ = std::make_unique<CoverageLikelihood>(std::move(stretched), std::move(cameras));
 }
@@ -66,8 +65,8 @@ void BodyError::add_wrong_size(const PinholeCamera& camera, std::span<const doub
   }
   const Eigen::Vector3d of_root = size_deviation_ * (landmarks.front() - centre);
   for (size_t d = 0; d < pose.size(); ++d) {
-    const Dof& dof = body.skeleton.dofs()[d];
-    if (dof.is_translation && dof.joint_idx == 0) result.dofs[d] += std::pow(dof.axis.dot(of_root), 2);
+    const bool moves_root = std::ranges::count(body.profile.root_translations, static_cast<int>(d)) > 0;
+    if (moves_root) result.dofs[d] += std::pow(body.skeleton.axis_in_parent(static_cast<int>(d)).dot(of_root), 2);
   }
 }
 

@@ -44,7 +44,7 @@ class BodyError {
   std::unique_ptr<CoverageLikelihood> likelihood_;  // of the stretchable body
   double size_deviation_;
   Eigen::MatrixXd lengths_;                         // [S, S] prior covariance
-  std::vector<double> deviation_, seen_deviation_;  // [D] motion/noise.h's pose_deviation
+  std::vector<double> deviation_, seen_deviation_;  // [D] the profile's, from rest
 };
 
 }  // namespace silpose

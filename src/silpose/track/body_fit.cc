@@ -227,7 +227,7 @@ std::optional<SizeFit> rescale_by_floor(BodyModel& body, const PinholeCamera& ca
   for (std::vector<double>& pose : poses) {
     if (pose.empty()) continue;
     const Eigen::Vector3d root = body.skeleton.forward_kinematics(pose).front().translation;
-    place_root(body.skeleton, pose, centre + size->factor * (root - centre));
+    place_root(body.skeleton, body.profile, pose, centre + size->factor * (root - centre));
   }
   body = scaled(body, size->factor);
   body.facts["fitted_size"] = fmt::format("{:.4f}", size->factor);

@@ -238,7 +238,7 @@ TEST_F(OneCameraFitTest, ASizeThatIsNotKnownComesFromTheFloor) {
   for (std::vector<double>& pose : sequence_.poses) {
     Eigen::Vector3d root = body_->skeleton.forward_kinematics(pose).front().translation;
     root.y() += 0.05;  // the body's legs are so much longer than the subject's
-    place_root(body_->skeleton, pose, centre + 1.08 * (root - centre));
+    place_root(body_->skeleton, body_->profile, pose, centre + 1.08 * (root - centre));
   }
   const auto fitted = fit(larger);
   ASSERT_TRUE(fitted.has_value() && fitted->size.has_value());

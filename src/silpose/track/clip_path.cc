@@ -5,14 +5,13 @@
 
 #include "silpose/base/check.h"
 #include "silpose/geometry/rigid3.h"
-#include "silpose/motion/noise.h"
 
 namespace silpose {
 namespace {
 
 using Eigen::VectorXd;
 
-// [guess] Times acceleration_deviation: hypotheses are fits and have errors of their own.
+// [guess] Times the profile's acceleration: hypotheses are fits and have errors of their own.
 constexpr double kMotionDeviation = 4;
 
 }  // namespace
@@ -53,11 +52,12 @@ double motion_cost(const Skeleton& skeleton, std::span<const double> deviation, 
   return cost;
 }
 
-std::vector<VectorXd> best_path(const Skeleton& skeleton, std::span<const Hypotheses> hypotheses,
-                                std::span<const std::vector<double>> energies, std::span<const int64_t> times_ns) {
+std::vector<VectorXd> best_path(const Skeleton& skeleton, std::span<const double> acceleration,
+                                std::span<const Hypotheses> hypotheses, std::span<const std::vector<double>> energies,
+                                std::span<const int64_t> times_ns) {
   check(energies.size() == hypotheses.size() && times_ns.size() == hypotheses.size(),
         "best_path: {} energies and {} times of {} instants", energies.size(), times_ns.size(), hypotheses.size());
-  std::vector<double> deviation = acceleration_deviation(skeleton);
+  std::vector<double> deviation(acceleration.begin(), acceleration.end());
   for (double& of_dof : deviation) of_dof *= kMotionDeviation;
   const std::vector<size_t> path = cheapest_path(energies, [&](size_t t, size_t from, size_t to) {
     const double dt_s = static_cast<double>(times_ns[t + 1] - times_ns[t]) * 1e-9;

@@ -33,9 +33,11 @@ double motion_cost(const Skeleton& skeleton, std::span<const double> deviation, 
 // [guess] Limit of one DOF's part of motion_cost().
 inline constexpr double kMostMotionCost = 30;
 
-// The poses [T] of [D] of the best path. `energies` [T][K] of the hypotheses, -2 log-likelihood; times must grow.
+// The poses [T] of [D] of the best path. `acceleration` [D]: deviations, as in body/rig_profile.h. `energies` [T][K] of
+// the hypotheses, -2 log-likelihood; times must grow.
 // Errors: as cheapest_path().
-std::vector<Eigen::VectorXd> best_path(const Skeleton& skeleton, std::span<const Hypotheses> hypotheses,
+std::vector<Eigen::VectorXd> best_path(const Skeleton& skeleton, std::span<const double> acceleration,
+                                       std::span<const Hypotheses> hypotheses,
                                        std::span<const std::vector<double>> energies,
                                        std::span<const int64_t> times_ns);
 

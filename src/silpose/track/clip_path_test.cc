@@ -8,7 +8,6 @@
 
 #include "silpose/body/test_body.h"
 #include "silpose/geometry/rigid3.h"
-#include "silpose/motion/noise.h"
 
 namespace silpose {
 namespace {
@@ -127,9 +126,9 @@ TEST_F(MotionCostTest, BestPathDoesNotJump) {
     hypotheses.push_back({{zero_, unit(0, 0.3)}, {zero_, zero_}});
     times_ns.push_back(t * int64_t{33'333'333});
   }
-  for (const Eigen::VectorXd& pose : best_path(skeleton_, hypotheses, energies, times_ns)) EXPECT_EQ(pose, zero_);
+  for (const Eigen::VectorXd& pose : best_path(skeleton_, acceleration_, hypotheses, energies, times_ns)) EXPECT_EQ(pose, zero_);
   energies[2] = {300, 1};  // more than two jumps cost
-  const std::vector<Eigen::VectorXd> jumped = best_path(skeleton_, hypotheses, energies, times_ns);
+  const std::vector<Eigen::VectorXd> jumped = best_path(skeleton_, acceleration_, hypotheses, energies, times_ns);
   EXPECT_EQ(jumped[1], zero_);
   EXPECT_EQ(jumped[2], unit(0, 0.3));
   EXPECT_EQ(jumped[3], zero_);
@@ -148,10 +147,10 @@ TEST_F(MotionCostTest, BestPathBridgesAGapByVelocity) {
     hypotheses.push_back({{moving}, {velocity}});
     if (t == 1 || t == 2) hypotheses.back() = {{zero_, moving}, {velocity, velocity}};
   }
-  const std::vector<Eigen::VectorXd> path = best_path(skeleton_, hypotheses, energies, times_ns);
+  const std::vector<Eigen::VectorXd> path = best_path(skeleton_, acceleration_, hypotheses, energies, times_ns);
   EXPECT_EQ(path[1], hypotheses[1].poses[1]);
   EXPECT_EQ(path[2], hypotheses[2].poses[1]);
-  EXPECT_THROW(best_path(skeleton_, hypotheses, energies, {}), std::invalid_argument);
+  EXPECT_THROW(best_path(skeleton_, acceleration_, hypotheses, energies, {}), std::invalid_argument);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "silpose/base/parallel.h"
 #include "silpose/track/limb_search.h"
 #include "silpose/track/limb_variants.h"
-#include "silpose/track/limbs.h"
 #include "silpose/track/picture_moves.h"
 #include "silpose/track/place_on_mask.h"
 
@@ -35,31 +34,33 @@ constexpr double kStaleCost = 0.97, kHopelessRatio = 5, kHopeless = 100;
 constexpr int kStaleRounds = 2;
 constexpr double kContradicted = 20;  // [guess] by keypoints, more than the best start
 
-// Loosely about a candidate: joints by half their range, the trunk's tilt by 20 degrees; where the body is, and which
-// way it faces, is free.
-PosePrior prior_about(const Skeleton& skeleton, const Eigen::VectorXd& pose) {
+// Loosely about a candidate: joints by half their range, the tilt of what stands upright by 20 degrees; where the body
+// is, and which way it faces, is free.
+PosePrior prior_about(const BodyModel& body, const Eigen::VectorXd& pose) {
   PosePrior prior{pose, Eigen::MatrixXd::Zero(pose.size(), pose.size())};
   for (Eigen::Index d = 0; d < pose.size(); ++d) {
-    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-    const bool vertical = dof.joint_idx == 0 && std::abs(dof.axis.y()) > 0.5;
-    double deviation = dof.is_translation ? 0 : dof.joint_idx == 0 ? to_radians(20) : 0.5 * (dof.upper - dof.lower);
-    if (dof.joint_idx == 0 && !dof.is_translation && vertical) deviation = 0;
+    const Dof& dof = body.skeleton.dofs()[static_cast<size_t>(d)];
+    const bool is_tilt = dof.joint_idx == 0 && body.profile.up.has_value();
+    double deviation = dof.is_translation ? 0 : is_tilt ? to_radians(20) : 0.5 * (dof.upper - dof.lower);
+    if (d == body.profile.heading) deviation = 0;
     prior.information(d, d) = deviation > 0 ? 1 / (deviation * deviation) : 1e-6;
   }
   return prior;
 }
 
-// Which of eight directions a pose faces, for a skeleton whose root turns about the vertical; else 0.
-int heading_sector(const Skeleton& skeleton, const Eigen::VectorXd& pose) {
-  const std::optional<int> turn = turning_dof(skeleton);
-  return turn ? static_cast<int>(std::lround(wrap_angle(pose[*turn]) / (kPi / 4)) + 8) % 8 : 0;
+// Which of so many directions a pose faces: 0 for a rig without heading.
+constexpr int kNumSectors = 8;
+int heading_sector(const RigProfile& profile, const Eigen::VectorXd& pose) {
+  if (!profile.heading) return 0;
+  return static_cast<int>(std::lround(wrap_angle(pose[*profile.heading]) / (kPi / 4)) + kNumSectors) % kNumSectors;
 }
 
-// Front and back look alike in a silhouette. Without other evidence, a person in front of a camera faces it: 1 when the
-// root does, -1 when its back does.
+// Front and back look alike in a silhouette. Without other evidence, who is in front of a camera faces it: 1 when the
+// root does, -1 when its back does; 0 for a rig without a front.
 double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {
+  if (!body.profile.facing) return 0;
   const Rigid3 root = body.skeleton.forward_kinematics(pose).front();
-  return (root.rotation * Eigen::Vector3d::UnitZ()).dot((camera.centre_in_world() - root.translation).normalized());
+  return (root.rotation * *body.profile.facing).dot((camera.centre_in_world() - root.translation).normalized());
 }
 
 struct Candidate {
@@ -90,10 +91,10 @@ void fit_all(const Sight& sight, std::span<const FitStage> stages, std::vector<C
 
 void sort_best_first(std::vector<Candidate>& candidates) { std::ranges::stable_sort(candidates, {}, &Candidate::cost); }
 
-Candidate candidate_at(const Skeleton& skeleton, std::span<const double> pose) {
+Candidate candidate_at(const BodyModel& body, std::span<const double> pose) {
   Candidate candidate;
   candidate.fit.pose = Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose));
-  candidate.prior = prior_about(skeleton, candidate.fit.pose);
+  candidate.prior = prior_about(body, candidate.fit.pose);
   return candidate;
 }
 
@@ -113,8 +114,7 @@ void keep_distinct(const BodyModel& body, double distance, size_t most, std::vec
 // Of the best starts, with the limbs that look most promising.
 std::vector<Candidate> promising_variants(const Sight& sight, std::span<const Candidate> starts,
                                           const InitialisationOptions& options, uint64_t stream) {
-  const Skeleton& skeleton = sight.body().skeleton;
-  const std::vector<Limb> limbs = limbs_of(skeleton);
+  const std::vector<Limb>& limbs = sight.body().profile.limbs;
   const LimbSearchOptions search{options.num_random_limbs, options.num_fitted, kNovelty, kTwoAtOnce};
   std::vector<std::vector<LimbVariant>> variants(std::min(starts.size(), static_cast<size_t>(options.num_varied)));
   parallel_for(variants.size(), 1, [&](size_t begin, size_t end) {
@@ -126,7 +126,7 @@ std::vector<Candidate> promising_variants(const Sight& sight, std::span<const Ca
   });
   std::vector<Candidate> chosen;
   for (const auto& of_start : variants) {
-    for (const LimbVariant& variant : of_start) chosen.push_back(candidate_at(skeleton, variant.pose));
+    for (const LimbVariant& variant : of_start) chosen.push_back(candidate_at(sight.body(), variant.pose));
   }
   return chosen;
 }
@@ -138,7 +138,7 @@ std::vector<Candidate> distant_variants(const Sight& sight, std::span<const Cand
   for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
     Rng rng(options.seed, kDistantStream - index, i);
     for (const auto& pose : picture_moves(sight.body(), view(starts[i].fit.pose), sight.eye, rng)) {
-      chosen.push_back(candidate_at(sight.body().skeleton, pose));
+      chosen.push_back(candidate_at(sight.body(), pose));
     }
   }
   fit_all(sight, kDistantStages, chosen);
@@ -146,11 +146,11 @@ std::vector<Candidate> distant_variants(const Sight& sight, std::span<const Cand
 }
 
 // Starts by the direction they face, the one with the best start first. REQUIRES: sorted, best first.
-std::vector<std::vector<Candidate>> by_heading(const Skeleton& skeleton, std::vector<Candidate> starts) {
+std::vector<std::vector<Candidate>> by_heading(const RigProfile& profile, std::vector<Candidate> starts) {
   std::vector<std::vector<Candidate>> groups;
-  std::array<std::optional<size_t>, 8> group_of;
+  std::array<std::optional<size_t>, kNumSectors> group_of;
   for (Candidate& start : starts) {
-    auto& group = group_of[static_cast<size_t>(heading_sector(skeleton, start.fit.pose))];
+    auto& group = group_of[static_cast<size_t>(heading_sector(profile, start.fit.pose))];
     if (!group) group = groups.size(), groups.emplace_back();
     groups[*group].push_back(std::move(start));
   }
@@ -215,16 +215,17 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   const StateBatch placed = place_on_mask(body, camera, observations[*seen], candidates);
   std::vector<Candidate> starts(static_cast<size_t>(placed.rows()));
   for (size_t k = 0; k < starts.size(); ++k) {
-    starts[k] = candidate_at(skeleton, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
+    starts[k] = candidate_at(body, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
   }
   const Sight sight{likelihood, plausibility, evidence, camera.centre_in_world()};
   const auto has_keypoints = [](const CoverageEvidence::View& view) { return view.keypoints != nullptr; };
   const double facing_bonus = std::ranges::any_of(evidence.views, has_keypoints) ? 0 : options.facing_bonus;
   fit_all(sight, kCoarseStages, starts);
   sort_best_first(starts);
-  std::array<int, 8> taken{};
+  std::array<int, kNumSectors> taken{};
+  const int most = options.num_per_heading * (body.profile.heading ? 1 : kNumSectors);
   std::erase_if(starts, [&](const Candidate& c) {
-    return ++taken[static_cast<size_t>(heading_sector(skeleton, c.fit.pose))] > options.num_per_heading;
+    return ++taken[static_cast<size_t>(heading_sector(body.profile, c.fit.pose))] > most;
   });
   fit_all(sight, kFineStages, starts);
   sort_best_first(starts);
@@ -232,8 +233,8 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   // The whole body mirrored in depth looks almost the same.
   std::vector<Candidate> mirrored;
   for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
-    const std::vector<double> pose = mirrored_in_depth(skeleton, view(starts[i].fit.pose), sight.eye);
-    if (!pose.empty()) mirrored.push_back(candidate_at(skeleton, pose));
+    const std::vector<double> pose = mirrored_in_depth(body, view(starts[i].fit.pose), sight.eye);
+    if (!pose.empty()) mirrored.push_back(candidate_at(body, pose));
   }
   fit_all(sight, kFineStages, mirrored);
   std::ranges::move(mirrored, std::back_inserter(starts));
@@ -248,7 +249,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   for (double& of_camera : noise) of_camera = std::max(of_camera, CoverageLikelihood::kExactNoise);
   set_noise(likelihood, noise, evidence, starts, scratch);
   sort_best_first(starts);
-  std::vector<std::vector<Candidate>> headings = by_heading(skeleton, std::move(starts));
+  std::vector<std::vector<Candidate>> headings = by_heading(body.profile, std::move(starts));
   starts.clear();
   double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < headings.size(); ++i) {

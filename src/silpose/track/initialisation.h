@@ -17,7 +17,7 @@
 namespace silpose {
 
 struct InitialisationOptions {
-  int num_per_heading = 5;         // of eight: candidates that are fitted finely
+  int num_per_heading = 5;         // of eight: candidates that are fitted finely; as many in all without a heading
   int num_headings = 8;            // that are searched, the best first, until a start explains the silhouette
   int first_heading = 0;           // of the best, cyclic
   int num_varied = 4;              // the best of a heading, of which other limbs are tried

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "silpose/body/rigs_for_test.h"
 #include "silpose/body/test_body.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/track/limbs.h"
 #include "silpose/track/place_on_mask.h"
 
 namespace silpose {
@@ -37,26 +37,9 @@ TEST_F(InitialisationTest, PlacesTheBodyOnTheMask) {
   EXPECT_NEAR(placed(0, 2), truth[2], 0.15);  // depth comes from size alone
 }
 
-// The test body with its rotations before its translations, or without translations.
-BodyModel with_rotations_first(bool has_translations) {
-  BodyModel body = make_test_body();
-  const auto old = body.skeleton.dofs();
-  std::vector<Dof> dofs(old.begin() + 3, old.end());
-  std::vector<Joint> joints(body.skeleton.joints().begin(), body.skeleton.joints().end());
-  joints[0].dof_indices = {0};
-  joints[1].dof_indices = {1, 2};
-  joints[2].dof_indices = {3, 4};
-  if (has_translations) {
-    joints[0].dof_indices = {5, 6, 7, 0};
-    for (const size_t axis : {2, 0, 1}) dofs.push_back(old[axis]);
-  }
-  body.skeleton = Skeleton("tube", std::move(joints), std::move(dofs));
-  return body;
-}
-
 TEST_F(InitialisationTest, PlacesABodyWhoseFirstDofsAreRotations) {
   const std::vector<double> truth = {0.3, 0.55, -0.4, 0, 0, 0, 0, 0};
-  const BodyModel body = with_rotations_first(true);
+  const BodyModel body = make_rotations_first_body();
   const StateBatch placed = place_on_mask(body, camera_, see(truth), StateBatch::Zero(1, 8));
   for (int d = 0; d < 5; ++d) EXPECT_EQ(placed(0, d), 0) << body.skeleton.dofs()[static_cast<size_t>(d)].name;
   EXPECT_NEAR(placed(0, 5), truth[2], 0.15);
@@ -65,9 +48,8 @@ TEST_F(InitialisationTest, PlacesABodyWhoseFirstDofsAreRotations) {
 }
 
 TEST_F(InitialisationTest, LeavesABodyThatCannotMoveWhereItIs) {
-  const BodyModel body = with_rotations_first(false);
-  const StateBatch candidates = StateBatch::Constant(2, 5, 0.125);
-  EXPECT_EQ(place_on_mask(body, camera_, see({0.3, 0.55, -0.4, 0, 0, 0, 0, 0}), candidates), candidates);
+  const StateBatch candidates = StateBatch::Constant(2, 8, 0.125);
+  EXPECT_EQ(place_on_mask(make_chain_body(), camera_, see({0.3, 0.55, -0.4, 0, 0, 0, 0, 0}), candidates), candidates);
 }
 
 TEST_F(InitialisationTest, DescendsToABentPoseFromAStraightOne) {

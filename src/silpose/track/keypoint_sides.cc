@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "silpose/base/check.h"
+#include "silpose/shape/keypoint_axes.h"
 
 namespace silpose {
 namespace {
@@ -38,7 +39,7 @@ double likelihood(const Eigen::Vector3d& line, const Eigen::Vector3d& expected) 
 
 std::optional<Eigen::Vector3d> line_across(const Keypoints3D& keypoints) {
   Eigen::Vector3d line = Eigen::Vector3d::Zero();
-  for (const auto& [right, left] : {std::pair{"right_thigh", "left_thigh"}, {"right_upper_arm", "left_upper_arm"}}) {
+  for (const auto& [right, left] : {kHipKeypoints, kShoulderKeypoints}) {
     const Keypoint3D *a = keypoints.find(right), *b = keypoints.find(left);
     if (!a || !b) return std::nullopt;
     for (int i = 0; i < 3; ++i) line[i] += b->x[static_cast<size_t>(i)] - a->x[static_cast<size_t>(i)];

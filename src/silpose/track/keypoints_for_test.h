@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "silpose/body/default_profile.h"
 #include "silpose/body/test_body.h"
 #include "silpose/image/observation.h"
 #include "silpose/shape/keypoint_axes.h"
@@ -27,6 +28,9 @@ inline BodyModel make_sided_body() {
     body.joint_from_rest.push_back(joint_from_rest);
   }
   body.skeleton = Skeleton("sided tube", std::move(joints), std::move(dofs));
+  body.profile = default_profile(body);
+  body.profile.facing = Eigen::Vector3d::UnitZ();
+  body.profile.across = {{3, 4}, {5, 6}};
   return body;
 }
 

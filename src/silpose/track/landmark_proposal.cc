@@ -11,7 +11,6 @@
 #include "silpose/base/levenberg.h"
 #include "silpose/base/parallel.h"
 #include "silpose/likelihood/keypoint_term.h"
-#include "silpose/motion/noise.h"
 
 namespace silpose {
 namespace {
@@ -20,9 +19,8 @@ constexpr int kMostIterations = 40;                     // [guess]
 constexpr SmallestGain kSmallestGain = {1e-3, 1e-4};    // [guess] of the cost
 constexpr double kLongestTurn = 0.35, kLongestWay = 1;  // [guess] of one step: radians, metres
 constexpr double kRegularisation = 1e-6;                // [guess] added to the diagonal: small, for invertible matrices
-constexpr double kFarWorse = 25;       // [guess] poses whose cost is so far above the best are not proposed
-constexpr double kSamePose = 0.05;     // [guess] metres: of two poses whose joints are all nearer, one is proposed
-constexpr double kSquarePerArea = 10;  // [guess] the squared height of an upright body over its area, in most poses
+constexpr double kFarWorse = 25;    // [guess] poses whose cost is so far above the best are not proposed
+constexpr double kSamePose = 0.05;  // [guess] metres: of two poses whose joints are all nearer, one is proposed
 
 struct Fit {
   Eigen::VectorXd pose;
@@ -36,7 +34,9 @@ struct Fit {
 class Problem {
  public:
   Problem(const BodyModel& body, const KeypointTerm& term)
-      : skeleton_(body.skeleton), term_(term), deviation_(pose_deviation(body.skeleton, term.num_directions() > 0)) {}
+      : skeleton_(body.skeleton),
+        term_(term),
+        deviation_(term.num_directions() > 0 ? body.profile.rest_if_seen : body.profile.rest) {}
 
   [[nodiscard]] Fit at(Eigen::VectorXd pose) const {
     const Eigen::Index D = pose.size();
@@ -78,7 +78,7 @@ class Problem {
 }  // namespace
 
 LandmarkProposal::LandmarkProposal(std::shared_ptr<const BodyModel> body, const PinholeCamera& camera)
-    : body_(std::move(body)), camera_(camera), common_(body_->skeleton) {}
+    : body_(std::move(body)), camera_(camera), common_(body_->skeleton, body_->profile) {}
 
 StateBatch LandmarkProposal::propose(const Observation& observation, int num_candidates, Rng& rng) const {
   check(num_candidates >= 0, "LandmarkProposal: {} candidates", num_candidates);
@@ -87,8 +87,8 @@ StateBatch LandmarkProposal::propose(const Observation& observation, int num_can
   if (!term.determines_pose() || box.empty()) return common_.propose(observation, num_candidates, rng);
 
   // At the distance at which the body covers as much as the mask, in the middle of its box.
-  const double depth =
-      body_->height_m * camera_.fy / std::sqrt(kSquarePerArea * static_cast<double>(observation.mask.count()));
+  const double depth = body_->height_m * camera_.fy /
+                       std::sqrt(1 / body_->profile.silhouette_area * static_cast<double>(observation.mask.count()));
   const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
   const Eigen::Vector3d root =
       camera_.cam_from_world.inverse() * Eigen::Vector3d(camera_.ray_from_pixel(middle) * depth);
@@ -98,7 +98,7 @@ StateBatch LandmarkProposal::propose(const Observation& observation, int num_can
   parallel_for(fits.size(), 4, [&](size_t begin, size_t end) {
     for (size_t k = begin; k < end; ++k) {
       Eigen::VectorXd pose = poses.row(static_cast<Eigen::Index>(k)).transpose();
-      place_root(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())}, root);
+      place_root(body_->skeleton, body_->profile, {pose.data(), static_cast<size_t>(pose.size())}, root);
       fits[k] = problem.at(std::move(pose));
       descend(fits[k], kMostIterations, kSmallestGain,
               [&](const Fit& from, double damping) { return problem.step(from, damping); });

@@ -74,7 +74,7 @@ TEST_F(LandmarkProposalTest, WithoutLandmarksTheCommonPosesAreProposed) {
   seen.keypoints_2d.clear();
   Rng rng(1, 0, 0);
   const StateBatch poses = LandmarkProposal(body_, camera_).propose(seen, 0, rng);
-  EXPECT_EQ(poses, CommonPoses(body_->skeleton).poses());
+  EXPECT_EQ(poses, CommonPoses(body_->skeleton, body_->profile).poses());
 }
 
 }  // namespace

@@ -16,10 +16,13 @@ std::vector<LimbPoint> limb_points(const BodyModel& body, const Limb& limb) {
   }
   if (points.empty()) return points;
   const int last_joint = limb.joints.back();
-  for (const BodyModel::EndPoint& end_point : body.end_points) {
-    if (end_point.joint_idx != last_joint) continue;
-    points.push_back({end_point.joint_idx, end_point.offset_in_joint});
-    break;
+  const auto end_point = std::ranges::find(body.end_points, last_joint, &BodyModel::EndPoint::joint_idx);
+  const auto joints = body.skeleton.joints();
+  const auto next = std::ranges::find(joints, last_joint, &Joint::parent_idx);
+  if (end_point != body.end_points.end()) {
+    points.push_back({last_joint, end_point->offset_in_joint});
+  } else if (next != joints.end()) {
+    points.push_back({last_joint, next->offset_in_parent});
   }
   return points;
 }

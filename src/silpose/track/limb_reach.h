@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "silpose/body/body_model.h"
-#include "silpose/track/limbs.h"
 
 namespace silpose {
 
@@ -18,7 +17,8 @@ struct LimbPoint {
   Eigen::Vector3d offset;  // in the joint
 };
 
-// From the limb's first joint that turns outwards: joint centres, then the end point of the last joint.
+// From the limb's first joint that turns outwards: joint centres, then the end point of the last joint, or the joint
+// that comes after it.
 std::vector<LimbPoint> limb_points(const BodyModel& body, const Limb& limb);
 
 // Where they are in a pose [D], world.

@@ -7,7 +7,6 @@
 
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/track/limb_variants.h"
-#include "silpose/track/limbs.h"
 
 namespace silpose {
 

@@ -15,11 +15,11 @@ void exchange(std::span<double> pose, const Limb& a, const Limb& b) {
   }
 }
 
-std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose) {
-  const std::vector<Limb> limbs = limbs_of(skeleton);
+std::vector<std::vector<double>> exchanged_limbs(const RigProfile& profile, std::span<const double> pose) {
+  const std::vector<Limb>& limbs = profile.limbs;
   std::vector<std::vector<double>> variants;
   std::vector<double> all(pose.begin(), pose.end());
-  for (const auto& [a, b] : alike_limbs(skeleton, limbs)) {
+  for (const auto& [a, b] : profile.limb_pairs) {
     std::vector<double> one(pose.begin(), pose.end());
     exchange(one, limbs[a], limbs[b]);
     exchange(all, limbs[a], limbs[b]);
@@ -78,7 +78,7 @@ std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Li
   for (size_t l = 0; l < limbs.size(); ++l) {
     for (auto& reflected : reflected_limb(body, limbs[l], pose, eye)) variants.push_back({{l}, std::move(reflected)});
   }
-  for (const auto& [a, b] : alike_limbs(body.skeleton, limbs)) {
+  for (const auto& [a, b] : body.profile.limb_pairs) {
     LimbVariant exchanged{{a, b}, {pose.begin(), pose.end()}};
     exchange(exchanged.pose, limbs[a], limbs[b]);
     variants.push_back(std::move(exchanged));
@@ -96,34 +96,36 @@ std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Li
   return variants;
 }
 
-std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,
-                                      const Eigen::Vector3d& eye) {
-  const std::optional<int> turn = turning_dof(skeleton);
-  if (!turn) return {};
-  Eigen::Vector3d root = Eigen::Vector3d::Zero();
-  for (const int d : skeleton.joints().front().dof_indices) {
-    const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-    if (dof.is_translation) root += pose[static_cast<size_t>(d)] * dof.axis;
-  }
-  // The body's own mirror image, x to -x with right and left exchanged: a turn about (x, y, z) becomes one about
-  // (x, -y, -z). Limbs that are alike have axes that are mirrored already.
+std::vector<double> mirrored_in_depth(const BodyModel& body, std::span<const double> pose, const Eigen::Vector3d& eye) {
+  const Skeleton& skeleton = body.skeleton;
+  const std::optional<int> turn = body.profile.heading;
+  if (!turn || !body.profile.facing) return {};
+  const Eigen::Vector3d root = skeleton.forward_kinematics(pose).front().translation;
+  const std::vector<double> zero(pose.size(), 0.0);
+  const std::vector<Rigid3> world_from_joint = skeleton.forward_kinematics(zero);
+  const Eigen::Matrix3Xd axes = skeleton.dof_axes(zero, world_from_joint);
+  const Eigen::Vector3d facing = world_from_joint.front().rotation * *body.profile.facing;
+  const Eigen::Vector3d across = Eigen::Vector3d::UnitY().cross(facing);
+  // The body's own mirror image, right and left exchanged: a turn about an axis across the body stays, one about an
+  // axis in the mirror's plane changes its sign. Limbs that are alike have axes that are mirrored already.
   std::vector<double> mirrored(pose.begin(), pose.end());
   std::vector<bool> paired(pose.size(), false);
-  const std::vector<Limb> limbs = limbs_of(skeleton);
-  for (const auto& [a, b] : alike_limbs(skeleton, limbs)) {
+  const std::vector<Limb>& limbs = body.profile.limbs;
+  for (const auto& [a, b] : body.profile.limb_pairs) {
     exchange(mirrored, limbs[a], limbs[b]);
     for (const size_t limb : {a, b}) {
       for (const int d : limbs[limb].dofs) paired[static_cast<size_t>(d)] = true;
     }
   }
   for (size_t d = 0; d < mirrored.size(); ++d) {
-    const Dof& dof = skeleton.dofs()[d];
-    if (!paired[d] && !dof.is_translation && std::abs(dof.axis.x()) < 0.5) mirrored[d] = -mirrored[d];
+    const bool stays = std::abs(axes.col(static_cast<Eigen::Index>(d)).dot(across)) >= 0.5;
+    if (!paired[d] && !skeleton.dofs()[d].is_translation && !stays) mirrored[d] = -mirrored[d];
   }
-  // From the plane x = 0 to the one through the root that faces the eye.
+  // From the body's own mirror plane to the one through the root that faces the eye.
   const Eigen::Vector3d towards = eye - root;
-  mirrored[static_cast<size_t>(*turn)] =
-      wrap_angle(mirrored[static_cast<size_t>(*turn)] + kPi + 2 * std::atan2(towards.x(), towards.z()));
+  double& heading = mirrored[static_cast<size_t>(*turn)];
+  heading =
+      wrap_angle(heading + kPi + 2 * std::atan2(towards.x(), towards.z()) - 2 * std::atan2(facing.x(), facing.z()));
   skeleton.clamp(mirrored);
   return mirrored;
 }

@@ -10,7 +10,6 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/body/body_model.h"
-#include "silpose/track/limbs.h"
 
 namespace silpose {
 
@@ -19,7 +18,7 @@ void exchange(std::span<double> pose, const Limb& a, const Limb& b);
 
 // The pose [D] with the angles of each pair of alike limbs exchanged, one pair at a time and then all at once. From the
 // side a silhouette hardly distinguishes the legs.
-std::vector<std::vector<double>> exchanged_limbs(const Skeleton& skeleton, std::span<const double> pose);
+std::vector<std::vector<double>> exchanged_limbs(const RigProfile& profile, std::span<const double> pose);
 
 // The pose with a limb's segments reflected in the planes that face `eye`: first segment, the others, all of them.
 // A segment ends where the next joint, or the end point, is. Only DOF of the limb change; a reflection that the limits
@@ -42,8 +41,8 @@ std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Li
                                        const Eigen::Vector3d& eye, int num_random, double two_at_once, Rng& rng);
 
 // The pose as a mirror that faces `eye` shows it, right and left relabelled: from far away its silhouette is the same.
-// Nothing for a skeleton whose root cannot turn about the vertical.
-std::vector<double> mirrored_in_depth(const Skeleton& skeleton, std::span<const double> pose,
-                                      const Eigen::Vector3d& eye);
+// Nothing for a rig without a heading, or of which it is not known where it faces: its right is not the mirror image of
+// its left.
+std::vector<double> mirrored_in_depth(const BodyModel& body, std::span<const double> pose, const Eigen::Vector3d& eye);
 
 }  // namespace silpose

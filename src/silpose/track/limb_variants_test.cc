@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "silpose/body/human_for_test.h"
+#include "silpose/body/human_profile.h"
+#include "silpose/body/rigs_for_test.h"
 #include "silpose/body/test_body.h"
 
 namespace silpose {
@@ -21,7 +23,7 @@ TEST(ExchangedLimbs, SwapsLegsArmsAndBoth) {
   pose[at("right_thigh_rx")] = 0.5;
   pose[at("left_hand_rz")] = 0.2;
   pose[at("thorax_ry")] = 0.1;
-  const auto variants = exchanged_limbs(skeleton, pose);
+  const auto variants = exchanged_limbs(human_profile(skeleton), pose);
   ASSERT_THAT(variants, SizeIs(3));
   EXPECT_EQ(variants[0][at("left_thigh_rx")], 0.5);
   EXPECT_EQ(variants[0][at("right_thigh_rx")], 0);
@@ -34,7 +36,7 @@ TEST(ExchangedLimbs, SwapsLegsArmsAndBoth) {
 }
 
 TEST(ExchangedLimbs, ABodyWithoutPairsHasNone) {
-  EXPECT_TRUE(exchanged_limbs(make_test_body().skeleton, std::vector<double>(8, 0.0)).empty());
+  EXPECT_TRUE(exchanged_limbs(make_test_body().profile, std::vector<double>(8, 0.0)).empty());
 }
 
 const BodyModel& human() { return *human_for_test(); }
@@ -63,7 +65,7 @@ TEST(ReflectedLimb, KeepsWhereTheJointsAreSeenFromAfar) {
   const Eigen::Vector3d eye(0, 1, 200);  // far: perspective is negligible
   const auto before = landmark_positions(body, pose);
   int found = 0;
-  for (const Limb& limb : limbs_of(body.skeleton)) {
+  for (const Limb& limb : body.profile.limbs) {
     for (const auto& variant : reflected_limb(body, limb, pose, eye)) {
       ++found;
       const auto after = landmark_positions(body, variant);
@@ -87,7 +89,7 @@ TEST(MirroredInDepth, IsTheReflectionOfEveryJointWithItsPartner) {
   const BodyModel& body = human();
   const std::vector<double> pose = walking_pose();
   const Eigen::Vector3d eye(2, 1, 5), root(pose[0], pose[1], pose[2]);
-  const std::vector<double> mirrored = mirrored_in_depth(body.skeleton, pose, eye);
+  const std::vector<double> mirrored = mirrored_in_depth(body, pose, eye);
   Eigen::Vector3d normal = eye - root;
   normal.y() = 0;
   normal.normalize();
@@ -105,11 +107,24 @@ TEST(MirroredInDepth, IsTheReflectionOfEveryJointWithItsPartner) {
   }
 }
 
+// A rig whose own axes are not the world's: the same body, mirrored in the same way.
+TEST(MirroredInDepth, FollowsTheRigsOwnAxes) {
+  const BodyModel tube = make_test_body();
+  BodyModel turned = make_rotations_first_body();
+  const Eigen::Vector3d eye(2, 1, 5);
+  const std::vector<double> pose = {0.3, 0.6, -0.4, 0.5, 0.4, -0.3, 0.2, 0.6};
+  EXPECT_TRUE(mirrored_in_depth(turned, rotations_first(pose), eye).empty());  // it is not known where it faces
+  turned.profile.facing = Eigen::Vector3d(0, -1, 0);
+  EXPECT_LT(furthest_apart(landmark_positions(turned, mirrored_in_depth(turned, rotations_first(pose), eye)),
+                           landmark_positions(tube, mirrored_in_depth(tube, pose, eye))),
+            1e-12);
+}
+
 TEST(RandomLimb, MovesOnlyTheLimbAndStaysInside) {
   const Skeleton& skeleton = human().skeleton;
   const std::vector<double> pose = walking_pose();
   Rng rng(3);
-  for (const Limb& limb : limbs_of(skeleton)) {
+  for (const Limb& limb : human().profile.limbs) {
     const auto variant = random_limb(skeleton, limb, pose, rng);
     EXPECT_NE(variant, pose);
     for (size_t d = 0; d < pose.size(); ++d) {
@@ -122,7 +137,7 @@ TEST(RandomLimb, MovesOnlyTheLimbAndStaysInside) {
 
 TEST(LimbVariants, MoveOneLimbOrTwoAndNothingElse) {
   const BodyModel& body = human();
-  const std::vector<Limb> limbs = limbs_of(body.skeleton);
+  const std::vector<Limb>& limbs = body.profile.limbs;
   const std::vector<double> pose = walking_pose();
   const Eigen::Vector3d eye(2, 1, 5);
   const auto with = [&](int num_random, double two_at_once) {

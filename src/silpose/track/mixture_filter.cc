@@ -7,7 +7,6 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
-#include "silpose/motion/noise.h"
 
 namespace silpose {
 namespace {
@@ -47,9 +46,8 @@ MixtureFilter::MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine,
     : fine_(std::move(fine)), coarse_(std::move(coarse)), plausibility_(std::move(plausibility)), options_(options) {
   check(fine_ && coarse_ && plausibility_, "MixtureFilter: no likelihood, or no plausibility");
   check(options.num_hypotheses >= 1, "MixtureFilter: {} hypotheses", options.num_hypotheses);
-  const Skeleton& skeleton = fine_->body().skeleton;
-  limbs_ = limbs_of(skeleton);
-  acceleration_ = acceleration_deviation(skeleton);
+  limbs_ = fine_->body().profile.limbs;
+  acceleration_ = fine_->body().profile.acceleration;
   for (double& deviation : acceleration_) deviation *= options.acceleration;
 }
 

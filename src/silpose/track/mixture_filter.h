@@ -23,7 +23,7 @@ struct MixtureOptions {
   int num_hypotheses = 4;
   int num_parents = 2;           // of new hypotheses, the best
   LimbSearchOptions limbs;       // of new hypotheses, for each parent
-  double acceleration = 1.25;    // times motion/noise.h's acceleration_deviation
+  double acceleration = 1.25;    // times the profile's
   double rest_weight = 1;        // plausibility.h: holds what a silhouette does not show
   double jump_log_prior = -6;    // log-probability of a hypothesis that jumped
   double merge_distance = 0.05;  // metres: hypotheses with all joints nearer than this are merged

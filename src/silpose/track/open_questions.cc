@@ -54,25 +54,46 @@ int frames_of(std::span<const Stretch> some) {
   return sum;
 }
 
+// [J] the joints of limbs in pairs but for the last one of each; for a rig without such limbs, all joints.
+std::vector<bool> joints_between_bones(const BodyModel& body) {
+  const RigProfile& profile = body.profile;
+  std::vector<bool> is_between(body.skeleton.joints().size(), profile.limb_pairs.empty());
+  for (const auto& [right, left] : profile.limb_pairs) {
+    for (const size_t limb : {right, left}) {
+      for (const int j : profile.limbs[limb].joints) is_between[static_cast<size_t>(j)] = true;
+      is_between[static_cast<size_t>(profile.limbs[limb].joints.back())] = false;
+    }
+  }
+  return is_between;
+}
+
+// The direction of a joint's bone in the joint's frame: to the next joint, or to its end point; zero where neither is.
+Eigen::Vector3d bone_in_joint(const BodyModel& body, int joint_idx) {
+  for (const Joint& joint : body.skeleton.joints()) {
+    if (joint.parent_idx == joint_idx) return joint.offset_in_parent.stableNormalized();
+  }
+  for (const BodyModel::EndPoint& end : body.end_points) {
+    if (end.joint_idx == joint_idx) return end.offset_in_joint.stableNormalized();
+  }
+  return Eigen::Vector3d::Zero();
+}
+
 }  // namespace
 
 std::vector<std::string> doubtful_angles(std::span<const StepReport> reports, const BodyModel& body, size_t most) {
-  constexpr std::string_view kJoints[] = {"thigh", "shin", "upper_arm", "forearm"};
   const Skeleton& skeleton = body.skeleton;
-  const auto is_wanted = [&](const Dof& dof) {
-    const std::string_view joint = without_side(skeleton.joints()[static_cast<size_t>(dof.joint_idx)].name);
-    const bool is_known = skeleton.find_joint("right_shin").has_value();
-    return !dof.is_translation && (!is_known || std::ranges::count(kJoints, joint) > 0);
-  };
+  const std::vector<bool> is_wanted = joints_between_bones(body);
   std::vector<std::pair<double, std::string>> found;
   for (size_t j = 0; j < skeleton.joints().size(); ++j) {
+    if (!is_wanted[j]) continue;
+    const Eigen::Vector3d bone = bone_in_joint(body, static_cast<int>(j));
     const auto widest = [&](const StepReport& report) -> std::optional<double> {
       if (report.spread.empty()) return std::nullopt;
       double half = 0;
       for (const int d : skeleton.joints()[j].dof_indices) {
-        // A twist about the bone is left out: it moves only the joints below it. Bones lie along y in the zero pose.
+        // A twist about the bone is left out: it moves only the joints below it.
         const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-        if (!is_wanted(dof) || std::abs(dof.axis.y()) > kTwistCosine) continue;
+        if (dof.is_translation || std::abs(dof.axis.dot(bone)) > kTwistCosine) continue;
         half = std::max(half, kIntervalOfDeviation * to_degrees(report.spread[static_cast<size_t>(d)]));
       }
       return half;

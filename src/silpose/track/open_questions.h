@@ -17,9 +17,8 @@ namespace silpose {
 // left out.
 inline constexpr double kDoubtful_deg = 30, kOpenWeight = 0.15, kShortest_s = 0.25;
 
-// "right_shin 3.1-4.0 s: within 35 degrees", the widest first, at most `most`: of the joints between long bones (those
-// whose names a body has in KeypointTerm's segments), or, for other bodies, of all that turn; twists about a bone are
-// left out.
+// "right_shin 3.1-4.0 s: within 35 degrees", the widest first, at most `most`: of the joints between the bones of limbs
+// in pairs, or, for other rigs, of all that turn; twists about a bone are left out.
 std::vector<std::string> doubtful_angles(std::span<const StepReport> reports, const BodyModel& body, size_t most = 6);
 
 // One line for each kind of ambiguity: which frames, and what was done about it.

@@ -53,12 +53,12 @@ std::vector<double> exchanged_in_picture(const BodyModel& body, const Limb& a, c
 std::vector<double> turned_in_picture(const BodyModel& body, std::span<const double> pose, double angle,
                                       const Eigen::Vector3d& eye) {
   const Skeleton& skeleton = body.skeleton;
-  const std::optional<int> turn = turning_dof(skeleton);
+  const std::optional<int> turn = body.profile.heading;
   if (!turn) return {};
   std::vector<double> variant(pose.begin(), pose.end());
   double& heading = variant[static_cast<size_t>(*turn)];
   heading = wrap_angle(heading + angle);
-  for (const Limb& limb : limbs_of(skeleton)) {
+  for (const Limb& limb : body.profile.limbs) {
     const std::vector<LimbPoint> points = limb_points(body, limb);
     if (points.size() < 2) continue;
     const std::vector<Eigen::Vector3d> x = positions(skeleton, points, pose);
@@ -70,10 +70,10 @@ std::vector<double> turned_in_picture(const BodyModel& body, std::span<const dou
 std::vector<std::vector<double>> picture_moves(const BodyModel& body, std::span<const double> pose,
                                                const Eigen::Vector3d& eye, Rng& rng) {
   const double kTurn = to_radians(40);
-  const std::vector<Limb> limbs = limbs_of(body.skeleton);
+  const std::vector<Limb>& limbs = body.profile.limbs;
   std::vector<std::vector<double>> moves;
   std::vector<double> all(pose.begin(), pose.end());
-  for (const auto& [a, b] : alike_limbs(body.skeleton, limbs)) {
+  for (const auto& [a, b] : body.profile.limb_pairs) {
     std::vector<double> one = exchanged_in_picture(body, limbs[a], limbs[b], pose, eye, rng);
     if (one.empty()) continue;
     for (const size_t limb : {a, b}) {
@@ -83,7 +83,7 @@ std::vector<std::vector<double>> picture_moves(const BodyModel& body, std::span<
   }
   if (moves.size() > 1) moves.push_back(std::move(all));
   for (const double angle : {-kTurn, kTurn}) moves.push_back(turned_in_picture(body, pose, angle, eye));
-  moves.push_back(mirrored_in_depth(body.skeleton, pose, eye));
+  moves.push_back(mirrored_in_depth(body, pose, eye));
   std::erase_if(moves, [](const std::vector<double>& move) { return move.empty(); });
   return moves;
 }

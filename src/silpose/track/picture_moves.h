@@ -11,7 +11,6 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/body/body_model.h"
-#include "silpose/track/limbs.h"
 
 namespace silpose {
 
@@ -21,7 +20,7 @@ std::vector<double> exchanged_in_picture(const BodyModel& body, const Limb& a, c
                                          std::span<const double> pose, const Eigen::Vector3d& eye, Rng& rng);
 
 // The pose [D] turned about the vertical by `angle` (radians), with limbs that stay where `eye` sees them, as near as
-// they get. Nothing for a skeleton whose root cannot turn so.
+// they get. Nothing for a rig without a heading.
 std::vector<double> turned_in_picture(const BodyModel& body, std::span<const double> pose, double angle,
                                       const Eigen::Vector3d& eye);
 

@@ -42,10 +42,10 @@ double seen_apart(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 
 TEST(ExchangedInPicture, HandsAreSeenWhereTheOtherWas) {
   const Skeleton& skeleton = human().skeleton;
-  const std::vector<Limb> limbs = limbs_of(skeleton);
+  const std::vector<Limb>& limbs = human().profile.limbs;
   const std::vector<double> pose = reaching_pose();
   int found = 0;
-  for (const auto& [a, b] : alike_limbs(skeleton, limbs)) {
+  for (const auto& [a, b] : human().profile.limb_pairs) {
     if (!skeleton.dofs()[static_cast<size_t>(limbs[a].dofs.front())].name.ends_with("upper_arm_rx")) continue;
     ++found;
     constexpr int kSeeds = 10;
@@ -74,7 +74,7 @@ TEST(TurnedInPicture, HandsAndFeetStayWhereTheyAreSeen) {
   const std::vector<double> pose = reaching_pose();
   const auto turned = turned_in_picture(human(), pose, to_radians(40), kEye);
   ASSERT_EQ(turned.size(), pose.size());
-  const auto turn = static_cast<size_t>(*turning_dof(human().skeleton));
+  const auto turn = static_cast<size_t>(*human().profile.heading);
   EXPECT_NEAR(wrap_angle(turned[turn] - pose[turn]), to_radians(40), 1e-9);
   for (const char* end : {"right_foot", "left_foot", "right_hand", "left_hand"}) {
     EXPECT_LT(seen_apart(place_of(end, turned), place_of(end, pose)), 0.1) << end;

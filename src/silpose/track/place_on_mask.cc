@@ -48,7 +48,10 @@ StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, con
   const double longer_side = std::max(box.width, box.height);
   const Window window = window_of_image(camera.width, camera.height, std::min(1.0, kPlacingResolution / longer_side));
   const Blob observed = measure(resample_mask(observation.mask, window));
-  if (observed.area < 1) return candidates;
+  if (observed.area < 1 || body.profile.root_translations.empty()) return candidates;
+  check(body.profile.silhouette_area > 0, "place_on_mask: the area of the body's silhouettes is not known");
+  // The silhouette's size over the body's height, to two digits: the descent corrects the rest.
+  const double size = std::max(0.01, std::round(100 * std::sqrt(body.profile.silhouette_area)) / 100);
   const Eigen::Vector2d target = image_from_raster(window, observed.centroid);
   const EdgeTopology topology(body.rest.faces);
 
@@ -60,14 +63,14 @@ StateBatch place_on_mask(const BodyModel& body, const PinholeCamera& camera, con
     for (size_t k = begin; k < end; ++k) {
       auto row = placed.row(static_cast<Eigen::Index>(k));
       const std::span<double> pose(row.data(), static_cast<size_t>(body.skeleton.num_dofs()));
-      // Depth first from a body of average proportions: an upright body covers about a tenth of its height squared.
+      // Depth first from an upright body.
       double depth =
-          0.32 * body.height_m * std::sqrt(camera.fx * camera.fy) * window.scale_x / std::sqrt(observed.area);
+          size * body.height_m * std::sqrt(camera.fx * camera.fy) * window.scale_x / std::sqrt(observed.area);
       Eigen::Vector2d aim = target;
       for (int iteration = 0; iteration < 5; ++iteration) {
         const Eigen::Vector3d root =
             camera.cam_from_world.inverse() * Eigen::Vector3d(camera.ray_from_pixel(aim) * depth);
-        place_root(body.skeleton, pose, root);
+        place_root(body.skeleton, body.profile, pose, root);
         project_mesh(camera, skin_vertices(body, pose), body.rest.faces, mesh);
         outline.draw(mesh.pixels, window, mask, mesh.cut_faces);
         const Blob drawn = measure(mask);

@@ -5,7 +5,6 @@
 
 #include "silpose/base/check.h"
 #include "silpose/geometry/rigid3.h"
-#include "silpose/motion/noise.h"
 
 namespace silpose {
 namespace {
@@ -15,7 +14,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 // [guess] All of them. Student's t about rest itself is kept as it helps on degraded masks (docs/notebook/tracking.md).
-constexpr double kLimitDeviation = 0.02;    // radians beyond a limit that cost 1
+constexpr double kLimitDeviation = 0.02;    // radians, or metres, beyond a limit that cost 1
 constexpr double kRestFreedom = 2;          // degrees of freedom of Student's t
 constexpr double kOverlapDeviation = 0.02;  // metres that two spheres overlap, beyond what they do at rest
 constexpr double kYield = 0.02;             // metres that flesh gives way
@@ -28,7 +27,7 @@ double add_limits(const Skeleton& skeleton, const VectorXd& pose, VectorXd& grad
   double cost = 0;
   for (Eigen::Index d = 0; d < pose.size(); ++d) {
     const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-    if (dof.is_translation || dof.is_periodic) continue;
+    if (!dof.has_limits()) continue;
     const double beyond = pose[d] - std::clamp(pose[d], dof.lower, dof.upper);
     if (beyond == 0) continue;
     cost += kLimit * beyond * beyond;
@@ -95,8 +94,7 @@ std::vector<FleshSphere> bounds_of(size_t num_joints, const std::vector<FleshSph
 
 Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : body_(std::move(body)) {
   check(body_ != nullptr, "Plausibility: no body");
-  deviation_ = pose_deviation(body_->skeleton);
-  seen_deviation_ = pose_deviation(body_->skeleton, true);
+  check_profile(body_->profile, body_->skeleton);
   const Skeleton& skeleton = body_->skeleton;
   spheres_ = flesh_spheres(*body_);
   bounds_ = bounds_of(skeleton.joints().size(), spheres_);
@@ -189,9 +187,10 @@ double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, Ma
 double Plausibility::add(const VectorXd& pose, const RestPull& rest, VectorXd& gradient, MatrixXd& hessian) const {
   const PointMotion motion(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())});
   return add_limits(body_->skeleton, pose, gradient, hessian) +
-         (rest.weight > 0 ? add_rest(body_->skeleton, rest.directions_seen ? seen_deviation_ : deviation_, rest.weight,
-                                     pose, gradient, hessian)
-                          : 0) +
+         (rest.weight > 0
+              ? add_rest(body_->skeleton, rest.directions_seen ? body_->profile.rest_if_seen : body_->profile.rest,
+                         rest.weight, pose, gradient, hessian)
+              : 0) +
          add_penetration(motion, gradient, hessian) + add_floor(motion, gradient, hessian);
 }
 

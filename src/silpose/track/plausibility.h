@@ -17,7 +17,7 @@ namespace silpose {
 // How strongly poses are held near rest.
 struct RestPull {
   double weight = 1;             // 1 for a single pose, less for one of many similar ones
-  bool directions_seen = false;  // of limbs, by keypoints: what is measured is constrained less (motion/noise.h)
+  bool directions_seen = false;  // of limbs, by keypoints: what is measured is constrained less
 };
 
 class Plausibility {
@@ -47,7 +47,6 @@ class Plausibility {
   double add_floor(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
 
   std::shared_ptr<const BodyModel> body_;
-  std::vector<double> deviation_, seen_deviation_;  // [D] motion/noise.h's pose_deviation, without and with directions
   std::vector<FleshSphere> spheres_;
   std::vector<FleshSphere> bounds_;  // [J] a sphere about all spheres of a bone
   std::vector<BonePair> pairs_;

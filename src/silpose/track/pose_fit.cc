@@ -55,7 +55,7 @@ void limit_step(const Skeleton& skeleton, const PoseFitOptions& options, Eigen::
 void clamp_to_limits(const Skeleton& skeleton, Eigen::VectorXd& pose) {
   for (Eigen::Index d = 0; d < pose.size(); ++d) {
     const Dof& dof = skeleton.dofs()[static_cast<size_t>(d)];
-    if (!dof.is_translation && !dof.is_periodic) pose[d] = std::clamp(pose[d], dof.lower, dof.upper);
+    if (dof.has_limits()) pose[d] = std::clamp(pose[d], dof.lower, dof.upper);
   }
 }
 

@@ -8,7 +8,6 @@
 
 #include "silpose/body/human_for_test.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/track/limbs.h"
 #include "silpose/track/tracker.h"
 
 namespace silpose {

@@ -23,7 +23,7 @@ SamplingFilter::SamplingFilter(const SamplingOptions& options, const SilhouetteL
       likelihood_(likelihood),
       free_dofs_(std::move(free_dofs)),
       seed_(seed),
-      motion_(make_motion_model(options.motion, skeleton(), {.sigma_deg = options.sigma_deg}).value()),
+      motion_(make_motion_model(options.motion, skeleton(), likelihood.body().profile, {.sigma_deg = options.sigma_deg}).value()),
       resampler_(make_resampler(options.resampling, options.regenerate).value()) {}
 
 void SamplingFilter::start(std::span<const double> pose) {
@@ -51,7 +51,7 @@ void SamplingFilter::make_filter(StateBatch states) {
                                    .adaptive_noise = true,
                                    .circular = periodic_dofs(skeleton()),
                                    .seed = seed_};
-    for (const auto& limb : limb_blocks(skeleton())) annealed.blocks.push_back(motion_->columns_of(limb));
+    for (const auto& limb : limb_blocks(likelihood_.body())) annealed.blocks.push_back(motion_->columns_of(limb));
     filter_.emplace<AnnealedFilter>(std::move(states), resampler_, std::move(annealed));
   }
 }

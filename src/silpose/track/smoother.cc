@@ -7,7 +7,6 @@
 #include "silpose/base/check.h"
 #include "silpose/base/levenberg.h"
 #include "silpose/base/parallel.h"
-#include "silpose/motion/noise.h"
 #include "silpose/track/footing.h"
 
 namespace silpose {
@@ -120,7 +119,7 @@ class Problem {
         seen_(seen),
         options_(options),
         noise_(options.noise),
-        acceleration_(acceleration_deviation(likelihood.body().skeleton)) {
+        acceleration_(likelihood.body().profile.acceleration) {
     for (double& deviation : acceleration_) deviation *= options.acceleration;
   }
 

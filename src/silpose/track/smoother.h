@@ -19,7 +19,7 @@ namespace silpose {
 
 struct SmootherOptions {
   std::vector<FitStage> stages = {{Blur::k8, 4}, {Blur::k4, 4}, {Blur::k2, 4}};
-  double acceleration = 1.25;  // times motion/noise.h's acceleration_deviation
+  double acceleration = 1.25;  // times the profile's
   double rest_weight = 0.05;   // plausibility.h: of one frame, of some twenty a second that say the same
   EvidenceKind evidence = EvidenceKind::kSilhouette;
   std::vector<double> noise;  // [C] of the outlines, in units of pixel_unit^3; empty: that of exact masks. The last of

@@ -94,7 +94,8 @@ class ClipTracker {
     std::vector<int64_t> times_ns;
     for (const ClipInstant* instant : evidence.instants) times_ns.push_back(instant->time_ns);
     const SmoothedPoses smoothed = smooth_poses(*likelihood_, *plausibility_, evidence.instants, evidence.seen,
-                                                best_path(options_.body->skeleton, hypotheses, energies, times_ns),
+                                                best_path(options_.body->skeleton, options_.body->profile.acceleration,
+                                                          hypotheses, energies, times_ns),
                                                 {.evidence = options_.evidence, .noise = evidence.noise},
                                                 [&] { return proceed(passes.share_done()); });
     if (stopped_) return false;

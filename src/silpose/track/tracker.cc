@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "silpose/base/check.h"
 #include "silpose/base/clock.h"
@@ -44,6 +46,16 @@ constexpr double kReinitialiseShare = 0.5;
 constexpr double kTurnedCosine = 0.34, kFacingMemory_s = 0.5;
 constexpr double kFacingKnown_s = 3;  // [guess] after the last keypoints
 
+// The joints that the first pair of limbs with contacts stands on, the right one first: feet.
+std::optional<std::pair<int, int>> paired_contacts(const RigProfile& profile) {
+  for (const auto& [right, left] : profile.limb_pairs) {
+    const int a = profile.limbs[right].joints.back(), b = profile.limbs[left].joints.back();
+    const auto& contacts = profile.contact_joints;
+    if (std::ranges::count(contacts, a) > 0 && std::ranges::count(contacts, b) > 0) return std::pair(a, b);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 struct Tracker::Impl {
@@ -65,7 +77,8 @@ struct Tracker::Impl {
     }
     filter = make_pose_filter(options, likelihoods);
     for (size_t c = 0; c < options.cameras.size(); ++c) for_start.push_back(start_proposal(options, c));
-    if (!options.proposal) options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton);
+    if (!options.proposal)
+      options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton, options.body->profile);
   }
 
   // Starting poses for what is seen: the given one, or by descent; the last estimate competes, too.
@@ -124,10 +137,8 @@ struct Tracker::Impl {
     const Skeleton& skeleton = options.body->skeleton;
     const std::vector<Rigid3> joints = skeleton.forward_kinematics(pose);
     Eigen::Vector3d line = Eigen::Vector3d::Zero();
-    for (const auto& [right, left] : {std::pair{"right_thigh", "left_thigh"}, {"right_upper_arm", "left_upper_arm"}}) {
-      const std::optional<int> a = skeleton.find_joint(right), b = skeleton.find_joint(left);
-      if (!a || !b) return Eigen::Vector3d::Zero();
-      line += joints[static_cast<size_t>(*b)].translation - joints[static_cast<size_t>(*a)].translation;
+    for (const auto& [right, left] : options.body->profile.across) {
+      line += joints[static_cast<size_t>(left)].translation - joints[static_cast<size_t>(right)].translation;
     }
     return line.stableNormalized();
   }
@@ -160,14 +171,14 @@ struct Tracker::Impl {
   // The weights of hypotheses that face away from the estimate, and of those whose feet are exchanged against its own.
   void name_ambiguities(StepReport& report) const {
     if (options.fitted() == nullptr) return;
-    const std::optional<int> right = options.body->skeleton.find_joint("right_foot"),
-                             left = options.body->skeleton.find_joint("left_foot");
-    if (!right || !left) return;
+    const std::optional<std::pair<int, int>> feet = paired_contacts(options.body->profile);
+    if (!feet) return;
     const ParticleSet& particles = filter->particles();
     const std::vector<double> weights = particles.weights();
     const auto feet_of = [&](std::span<const double> pose) {
       const std::vector<Rigid3> joints = options.body->skeleton.forward_kinematics(pose);
-      return std::pair(joints[static_cast<size_t>(*right)].translation, joints[static_cast<size_t>(*left)].translation);
+      return std::pair(joints[static_cast<size_t>(feet->first)].translation,
+                       joints[static_cast<size_t>(feet->second)].translation);
     };
     const Eigen::Vector3d line = line_across_pose(report.pose);
     const auto [right_foot, left_foot] = feet_of(report.pose);

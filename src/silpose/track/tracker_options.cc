@@ -111,7 +111,7 @@ size_t start_camera(std::span<const Observation> observations) {
 std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options, size_t camera_idx) {
   if (options.landmarks) return std::make_shared<const LandmarkProposal>(options.body, options.cameras[camera_idx]);
   if (options.proposal) return options.proposal;
-  return std::make_shared<const CommonPoses>(options.body->skeleton);
+  return std::make_shared<const CommonPoses>(options.body->skeleton, options.body->profile);
 }
 
 }  // namespace silpose
