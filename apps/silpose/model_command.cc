@@ -8,6 +8,7 @@
 #include "apps/silpose/body_facts.h"
 #include "apps/silpose/body_levels.h"
 #include "apps/silpose/command.h"
+#include "apps/silpose/data_folder.h"
 #include "apps/silpose/model_fit.h"
 #include "silpose/geometry/rigid3.h"
 
