@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <cstdlib>
 #include <system_error>
 
 #include "apps/silpose/command.h"
+#include "apps/silpose/data_folder.h"
 #include "silpose/base/whole_file.h"
 #include "silpose/body/human.h"
 #include "silpose/render/body_levels.h"
@@ -75,14 +75,6 @@ void add_model_option(CLI::App& command, std::string& model) {
           "The body: human, human:age=30,sex=f,height=1.62,weight=58,muscle=0.5 (years, m, kg), or a .body file")
       ->capture_default_str()
       ->check(is_model());
-}
-
-fs::path data_directory() {
-  if (const char* set = std::getenv("SILPOSE_DATA"); set != nullptr && *set != '\0') return set;
-  std::error_code failed;
-  if (fs::exists(SILPOSE_DATA_DIR, failed)) return SILPOSE_DATA_DIR;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  return program.parent_path().parent_path() / "share" / "silpose";
 }
 
 std::optional<BodyModel> kept_human(const fs::path& body_file) {

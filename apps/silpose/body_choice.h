@@ -19,10 +19,6 @@ CLI::Validator is_model();
 
 void add_model_option(CLI::App& command, std::string& model);
 
-// The folder of the fetched body data: $SILPOSE_DATA, else data/ of the source tree this was built from, else
-// ../share/silpose next to the program.
-std::filesystem::path data_directory();
-
 // The human kept in `body_file`, unless the program or the body data is newer, or an earlier version of the program
 // placed its joints elsewhere: then it has to be rebuilt.
 std::optional<BodyModel> kept_human(const std::filesystem::path& body_file);

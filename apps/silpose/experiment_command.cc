@@ -8,6 +8,7 @@
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
+#include "apps/silpose/data_folder.h"
 #include "apps/silpose/run_facts.h"
 #include "silpose/experiment/engine.h"
 #include "silpose/experiment/experiment_directory.h"
@@ -28,19 +29,10 @@ struct ExperimentOptions {
   bool list = false, quick = false, resume = false;
 };
 
-// The folder of the descriptions: experiments/ of the source tree this was built from, else
-// ../share/silpose/experiments next to the program.
-fs::path description_folder() {
-  std::error_code failed;
-  if (fs::exists(SILPOSE_EXPERIMENTS_DIR, failed)) return SILPOSE_EXPERIMENTS_DIR;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failed);
-  return program.parent_path().parent_path() / "share" / "silpose" / "experiments";
-}
-
 std::vector<fs::path> all_descriptions() {
   std::vector<fs::path> files;
   std::error_code failed;
-  for (const fs::directory_entry& entry : fs::directory_iterator(description_folder(), failed)) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(experiments_directory(), failed)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
@@ -70,7 +62,7 @@ Result<Outcome> list_experiments(const ExperimentOptions& options) {
     outcome.text +=
         fmt::format("{}{:18} {:5} runs  {}", outcome.text.empty() ? "" : "\n", grid->name, runs, grid->title);
   }
-  if (outcome.text.empty()) return error("{}: no experiments", description_folder().string());
+  if (outcome.text.empty()) return error("{}: no experiments", experiments_directory().string());
   return outcome;
 }
 

@@ -8,6 +8,7 @@
 
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
+#include "apps/silpose/data_folder.h"
 #include "silpose/image/image_file.h"
 
 namespace silpose::app {

@@ -65,6 +65,9 @@ int run_program(int argc, char** argv) {
 
   CLI::App program{"Tracks the 3D pose of one person in a clip, from silhouettes.", "silpose"};
   program.set_version_flag("--version", SILPOSE_VERSION);
+  program.footer(
+      "SILPOSE_DATA in the environment names the folder of bodies, networks and experiments to use instead of "
+      "the installed one.");
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
   std::vector<Command> commands = {add_track(program, common),     add_synth(program, common),

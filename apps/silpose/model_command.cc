@@ -7,6 +7,7 @@
 #include "apps/silpose/body_choice.h"
 #include "apps/silpose/body_facts.h"
 #include "apps/silpose/command.h"
+#include "apps/silpose/data_folder.h"
 #include "apps/silpose/model_fit.h"
 #include "silpose/geometry/rigid3.h"
 #include "silpose/render/body_levels.h"

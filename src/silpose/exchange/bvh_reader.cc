@@ -16,7 +16,9 @@ namespace {
 constexpr int kMaxChannels = 6;                               // of one joint
 constexpr double kLargest = 1e9;                              // of any number in the file
 constexpr double kShortestFrame = 1e-5, kLongestFrame = 1e3;  // seconds
-constexpr int64_t kMaxJoints = 10'000;  // far more than any capture has; keeps a broken file from filling the memory
+// Far more than any capture has; they keep a broken file from filling the memory. [guess]
+constexpr int64_t kMaxJoints = 10'000;
+constexpr size_t kMaxTransforms = 100'000'000;  // joints times frames: an hour at 120 fps has 43 million of 100 joints
 
 enum class Channel { kXPosition, kYPosition, kZPosition, kXRotation, kYRotation, kZRotation };
 
@@ -234,6 +236,7 @@ class Reader {
     const size_t J = clip_.joints.size();
     // What the file can hold at two bytes per value, however many frames it claims.
     const size_t expected = std::min(num_frames, lexer_.bytes_left() / (2 * num_channels_) + 1) * J;
+    if (expected > kMaxTransforms) return wrong("more than {} joints times frames", kMaxTransforms);
     clip_.rotations.reserve(expected);
     clip_.translations.reserve(expected);
     std::vector<double> values(num_channels_);

@@ -100,6 +100,15 @@ TEST_F(Bvh, ReadsHundredsOfJoints) {
   EXPECT_THAT(read(chain(10001)).error().message, HasSubstr("more than 10000 joints"));
 }
 
+// Few bytes a frame and many joints would fill the memory.
+TEST_F(Bvh, RefusesMoreThanMemoryHolds) {
+  std::string text = "HIERARCHY\nROOT j\n{\nOFFSET 0 1 0\nCHANNELS 1 Zrotation\n";
+  for (int j = 1; j < 10000; ++j) text += "JOINT j\n{\nOFFSET 0 1 0\n";
+  text += std::string(10000, '}') + "\nMOTION\nFrames: 20000\nFrame Time: 0.01\n";
+  for (int frame = 0; frame < 20000; ++frame) text += "0\n";
+  EXPECT_THAT(read(text).error().message, HasSubstr("more than 100000000 joints times frames"));
+}
+
 TEST_F(Bvh, NamesFileLineAndWhatIsWrong) {
   const auto with = [](const std::string& old_text, const std::string& new_text) {
     std::string text = kSmall;

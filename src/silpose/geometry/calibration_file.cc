@@ -15,6 +15,7 @@ namespace silpose {
 namespace {
 
 constexpr int kLargestPicture = 16384;   // pixels a side
+constexpr double kLargestTurn = 1e6;     // radians; beyond it, no digits are left for the direction [guess]
 constexpr double kPixelCentre = 0.5;     // the library's pixels less OpenCV's
 constexpr double kFarCentre = 100;       // a camera further from the origin than this is probably in millimetres
 constexpr double kClearlyUpright = 0.7;  // cosine between the cameras' mean up direction and the axis assumed to be up
@@ -110,6 +111,7 @@ Result<FileCamera> read_camera(const std::string& file, std::string_view key, co
   auto rotation = numbers(table.get("rotation"), 3, 3, where("rotation"));
   if (!rotation) return rotation.failure();
   const Eigen::Vector3d rodrigues = Eigen::Map<const Eigen::Vector3d>(rotation->data());
+  if (!(rodrigues.norm() <= kLargestTurn)) return error("{} is not a rotation vector in radians", where("rotation"));
   if (rodrigues.norm() > 0) {
     camera.cam_from_world.rotation = Eigen::AngleAxisd(rodrigues.norm(), rodrigues.normalized()).toRotationMatrix();
   }

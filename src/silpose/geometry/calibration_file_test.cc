@@ -206,6 +206,7 @@ TEST_F(CalibrationFile, NamesFileCameraAndKeyOfBadInput) {
       {"rotation", "", "rotation is missing"},
       {"rotation", "[0, 0, \"a\"]", "rotation holds something that is not a finite number"},
       {"rotation", "3", "rotation is not a list"},
+      {"rotation", "[0, 1e200, 0]", "rotation is not a rotation vector in radians"},
       {"translation", "", "translation is missing"},
       {"translation", "[1, 2, 3, 4]", "translation has 4 entries, not 3"},
       {"translation", "[1, true, 3]", "translation holds something that is not a finite number"},

@@ -13,7 +13,7 @@ namespace {
 
 // [guess] Larger files, tensors and steps are refused as damaged.
 constexpr size_t kMaxFileBytes = size_t{1} << 30;
-constexpr int64_t kMaxElements = int64_t{1} << 26;  // of one tensor
+constexpr int64_t kMaxElements = int64_t{1} << 26;  // of one tensor, and of all constants together
 constexpr int kMaxSize = 1 << 20;                   // of one axis
 constexpr int kMaxStep = 1024;                      // strides, dilations etc.
 enum TensorType { kFloat32 = 0, kFloat16 = 1, kInt32 = 2 };
@@ -255,9 +255,12 @@ Result<TfliteFile> read_graph(const Node& model) {
   const std::vector<Node> graphs = model.children(2), buffers = model.children(4);
   if (graphs.size() != 1) return error("has {} graphs, one is known", graphs.size());
   TfliteFile file;
+  int64_t num_elements = 0;
   for (const Node& node : graphs[0].children(0)) {
     Result<TfliteTensor> tensor = read_tensor(node, buffers);
     if (!tensor) return tensor.failure();
+    num_elements += static_cast<int64_t>(tensor->floats.size() + tensor->ints.size());
+    if (num_elements > kMaxElements) return error("has more than {} constant values", kMaxElements);
     file.tensors.push_back(std::move(*tensor));
   }
   const auto is_tensor = [&](int i) { return i >= 0 && i < static_cast<int>(file.tensors.size()); };

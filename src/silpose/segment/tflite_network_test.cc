@@ -182,6 +182,16 @@ TEST_F(TfliteNetworkTest, WhatDoesNotFitIsNamed) {
   EXPECT_THAT(failure(unknown.finish({in}, {out})), HasSubstr("operator that is not known, number 99"));
 }
 
+// Each of them may be that large, but not all together: sparse constants take few bytes of the file.
+TEST_F(TfliteNetworkTest, ConstantsThatWouldFillTheMemoryAreRefused) {
+  TfliteBytes bytes;
+  std::vector<uint8_t> starts(65, 1);
+  starts[0] = 0;
+  for (int i = 0; i < 2; ++i) bytes.sparse({64, 1 << 20}, {1}, starts, {0});
+  const int in = bytes.tensor("in", {1, 1, 1, 1});
+  EXPECT_THAT(failure(bytes.finish({in}, {in})), HasSubstr("has more than 67108864 constant values"));
+}
+
 // A file cut anywhere is refused, or at least harmless where only padding is gone.
 TEST_F(TfliteNetworkTest, CutFilesAreRefused) {
   const std::string whole = small_network();

@@ -94,6 +94,7 @@ class MotionCostTest : public testing::Test {
   }
 
   const Skeleton skeleton_ = make_test_body().skeleton;
+  const std::vector<double> acceleration_ = make_test_body().profile.acceleration;
   const std::vector<double> deviation_ = std::vector<double>(8, 0.5);
   const Eigen::VectorXd zero_ = Eigen::VectorXd::Zero(8);
 };
