@@ -90,7 +90,8 @@ Outcome track_outcome(const FinishedTrack& finished, const std::filesystem::path
   run["visual_accuracy"] = figure(summary.visual_accuracy_mean, summary.visual_accuracy_std);
   run["background"] = finished.source.segmentation();
   run["start_by_landmarks"] = tracked.used.landmarks;
-  run["evidence"] = finished.source.finds_keypoints() ? text_of(named_options(tracked.used).at("evidence")) : "silhouette";
+  run["evidence"] =
+      finished.source.finds_keypoints() ? text_of(named_options(tracked.used).at("evidence")) : "silhouette";
   run["cameras"] = nlohmann::ordered_json::array();
   for (const PinholeCamera& camera : finished.camera.cameras) run["cameras"].push_back(camera.name);
   run["doubtful"] = tracked.doubtful;

@@ -143,7 +143,8 @@ class FirstOrderAugmented final : public MotionModel {
 
 struct NamedModel {
   std::string_view name;
-  std::unique_ptr<MotionModel> (*make)(const Skeleton& skeleton, const RigProfile& profile, const MotionOptions& options);
+  std::unique_ptr<MotionModel> (*make)(const Skeleton& skeleton, const RigProfile& profile,
+                                       const MotionOptions& options);
 };
 
 template <class Model>

@@ -48,8 +48,8 @@ struct SessionResult {
   TrackRecording recording;               // without steps where a clip that is tracked as a whole was stopped early
   std::shared_ptr<const BodyModel> body;  // as given, or fitted
   std::optional<BodyFit> body_fit;        // where the body was fitted
-  TrackerOptions used;                    
-  int64_t num_frames = 0;                 // segmented
+  TrackerOptions used;
+  int64_t num_frames = 0;  // segmented
   StageSeconds seconds;
   double loop_s = 0;     // from the first frame to the last, all stages
   bool stopped = false;  // by the progress sink

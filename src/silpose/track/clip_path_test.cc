@@ -127,7 +127,8 @@ TEST_F(MotionCostTest, BestPathDoesNotJump) {
     hypotheses.push_back({{zero_, unit(0, 0.3)}, {zero_, zero_}});
     times_ns.push_back(t * int64_t{33'333'333});
   }
-  for (const Eigen::VectorXd& pose : best_path(skeleton_, acceleration_, hypotheses, energies, times_ns)) EXPECT_EQ(pose, zero_);
+  for (const Eigen::VectorXd& pose : best_path(skeleton_, acceleration_, hypotheses, energies, times_ns))
+    EXPECT_EQ(pose, zero_);
   energies[2] = {300, 1};  // more than two jumps cost
   const std::vector<Eigen::VectorXd> jumped = best_path(skeleton_, acceleration_, hypotheses, energies, times_ns);
   EXPECT_EQ(jumped[1], zero_);

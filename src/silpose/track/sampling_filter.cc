@@ -23,7 +23,8 @@ SamplingFilter::SamplingFilter(const SamplingOptions& options, const SilhouetteL
       likelihood_(likelihood),
       free_dofs_(std::move(free_dofs)),
       seed_(seed),
-      motion_(make_motion_model(options.motion, skeleton(), likelihood.body().profile, {.sigma_deg = options.sigma_deg}).value()),
+      motion_(make_motion_model(options.motion, skeleton(), likelihood.body().profile, {.sigma_deg = options.sigma_deg})
+                  .value()),
       resampler_(make_resampler(options.resampling, options.regenerate).value()) {}
 
 void SamplingFilter::start(std::span<const double> pose) {

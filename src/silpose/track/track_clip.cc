@@ -93,11 +93,10 @@ class ClipTracker {
     const std::vector<std::vector<double>> energies = energies_of(evidence, hypotheses);
     std::vector<int64_t> times_ns;
     for (const ClipInstant* instant : evidence.instants) times_ns.push_back(instant->time_ns);
-    const SmoothedPoses smoothed = smooth_poses(*likelihood_, *plausibility_, evidence.instants, evidence.seen,
-                                                best_path(options_.body->skeleton, options_.body->profile.acceleration,
-                                                          hypotheses, energies, times_ns),
-                                                {.evidence = options_.evidence, .noise = evidence.noise},
-                                                [&] { return proceed(passes.share_done()); });
+    const SmoothedPoses smoothed = smooth_poses(
+        *likelihood_, *plausibility_, evidence.instants, evidence.seen,
+        best_path(options_.body->skeleton, options_.body->profile.acceleration, hypotheses, energies, times_ns),
+        {.evidence = options_.evidence, .noise = evidence.noise}, [&] { return proceed(passes.share_done()); });
     if (stopped_) return false;
     evidence.noise = smoothed.noise;
     report_smoothed(options_, {evidence, smoothed, hypotheses, energies}, reports);
