@@ -120,7 +120,7 @@ TEST_F(MotionCostTest, PeriodicAnglesGoTheShortWayRound) {
 // that jumps there and back would fit best, but would not move plausibly.
 TEST_F(MotionCostTest, BestPathDoesNotJump) {
   std::vector<Hypotheses> hypotheses;
-  std::vector<std::vector<double>> energies(5, {1, 3});
+  std::vector<std::vector<double>> energies(5, {1, 100});
   energies[2] = {3, 1};
   std::vector<int64_t> times_ns;
   for (int t = 0; t < 5; ++t) {
