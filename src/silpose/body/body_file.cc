@@ -8,7 +8,6 @@
 #include "silpose/base/checked_file.h"
 #include "silpose/body/body_model.h"
 #include "silpose/body/default_profile.h"
-#include "silpose/body/human.h"
 #include "silpose/body/human_profile.h"
 
 namespace silpose {

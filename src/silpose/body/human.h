@@ -59,7 +59,4 @@ Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenot
 // Source: thesis Table 2.1 (cormier2019); signs, orders and limits: docs/formats.md.
 [[nodiscard]] Skeleton human_skeleton(std::span<const Eigen::Vector3d> joint_in_world);
 
-// Whether the skeleton's joints are called as those of human_skeleton(), in its order.
-[[nodiscard]] bool has_human_joints(const Skeleton& skeleton);
-
 }  // namespace silpose

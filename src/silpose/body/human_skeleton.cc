@@ -116,9 +116,4 @@ Skeleton human_skeleton(std::span<const Eigen::Vector3d> joint_in_world) {
   return Skeleton("human", std::move(joints), std::move(dofs));
 }
 
-bool has_human_joints(const Skeleton& skeleton) {
-  const auto is_called = [](const Joint& joint, const JointRow& row) { return joint.name == row.name; };
-  return std::ranges::equal(skeleton.joints(), kJoints, is_called);
-}
-
 }  // namespace silpose

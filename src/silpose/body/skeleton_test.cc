@@ -8,6 +8,7 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/body/human.h"
+#include "silpose/body/human_profile.h"
 
 namespace silpose {
 namespace {
@@ -25,6 +26,7 @@ std::vector<Eigen::Vector3d> round_joints() {
 class HumanSkeleton : public testing::Test {
  protected:
   const Skeleton skeleton = human_skeleton(round_joints());
+  EXPECT_TRUE(has_human_joints(skeleton));
   std::vector<double> pose = std::vector<double>(37, 0.0);
 
   void SetUp() override { pose[1] = 1; }
