@@ -4,11 +4,13 @@ set(SILPOSE_FLOORS
   base=0
   geometry=1 image=1 filter=1 files=1
   video=2 body=2 shape=2 calibrate=2 board=2
-  segment=3 render=3 motion=3 exchange=3 store=3
-  likelihood=4 synth=4
-  track=5 evaluate=5
-  recording=6
-  session=7 experiment=7 report=7)
+  segment=3 render=3 motion=3 human=3 mocap=3 store=3
+  likelihood=4 exchange=4
+  synth=5 fit=5 evaluate=5
+  track=6
+  offline=7 recording=7
+  session=8
+  experiment=9 report=9)
 
 function(silpose_floor_of NAME OUT)
   foreach(entry IN LISTS SILPOSE_FLOORS)
@@ -54,7 +56,8 @@ endfunction()
 # silpose_module(NAME [DEPENDS module...] [LINK library...] [LINK_PRIVATE library...] [TEST_DEPENDS module...])
 # makes, of the folder it is called in, the library silpose::NAME from every x.cc, and the test NAME from every x_test.cc.
 # The library and its headers are installed and exported, but those for tests (x_for_test.h) and x-inl.h.
-# LINK is for libraries seen in the module's headers. TEST_DEPENDS may name `synth` from any floor, or lower modules.
+# LINK is for libraries seen in the module's headers. TEST_DEPENDS may name lower
+# modules, and `synth` and `human` from any floor.
 function(silpose_module NAME)
   cmake_parse_arguments(arg "" "" "DEPENDS;LINK;LINK_PRIVATE;TEST_DEPENDS" ${ARGN})
   if(arg_UNPARSED_ARGUMENTS)
@@ -69,7 +72,7 @@ function(silpose_module NAME)
   endforeach()
   foreach(dependency IN LISTS arg_TEST_DEPENDS)
     silpose_floor_of(${dependency} floor)
-    if(NOT floor LESS own_floor AND NOT dependency STREQUAL "synth")
+    if(NOT floor LESS own_floor AND NOT dependency MATCHES "^(synth|human)$")
       message(FATAL_ERROR "tests of '${NAME}' (floor ${own_floor}) may not use '${dependency}' (floor ${floor})")
     endif()
   endforeach()

@@ -7,7 +7,7 @@
 #include "apps/silpose/command.h"
 #include "apps/silpose/data_folder.h"
 #include "silpose/base/whole_file.h"
-#include "silpose/body/human.h"
+#include "silpose/human/human.h"
 #include "silpose/render/body_levels.h"
 
 namespace silpose::app {

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "silpose/track/body_fit.h"
+#include "silpose/offline/body_fit.h"
 
 namespace silpose::app {
 

@@ -9,7 +9,7 @@
 #include "apps/silpose/body_fit_facts.h"
 #include "apps/silpose/camera_choice.h"
 #include "apps/silpose/input_options.h"
-#include "silpose/track/track_clip.h"
+#include "silpose/offline/track_clip.h"
 #include "silpose/track/tracker_presets.h"
 
 namespace silpose::app {

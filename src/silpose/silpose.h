@@ -3,9 +3,9 @@
 #pragma once
 
 #include "silpose/body/body_model.h"
-#include "silpose/body/human.h"
 #include "silpose/exchange/tables.h"
 #include "silpose/geometry/calibration_file.h"
+#include "silpose/human/human.h"
 #include "silpose/image/image_file.h"
 #include "silpose/image/memory_source.h"
 #include "silpose/render/silhouette.h"

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "silpose/base/text_file.h"
-#include "silpose/body/human_for_test.h"
 #include "silpose/body/levels.h"
+#include "silpose/human/human_for_test.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/likelihood/silhouette_likelihood.h"
 #include "silpose/synth/scene.h"

@@ -17,7 +17,8 @@ using Floors = std::map<std::string, int, std::less<>>;
 Floors parse_floors(std::string_view text);
 
 // #include lines under ROOT/src: a module of silpose or sadb includes itself and modules of strictly lower floors; its
-// tests also `synth`. sadb sees only base, geometry and image of silpose; below `recording`, silpose does not see sadb.
+// tests also `synth` and `human`. sadb sees only base, geometry and image of silpose; below `recording`, silpose does
+// not see sadb.
 std::vector<std::string> include_violations(const std::filesystem::path& root, const Floors& floors);
 
 // Circles of #include lines between units of one module: of src/silpose/*, of src/sadb/*, of apps/silpose or of bench.

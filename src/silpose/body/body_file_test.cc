@@ -9,10 +9,10 @@
 #include "silpose/base/rng.h"
 #include "silpose/base/text_file.h"
 #include "silpose/body/body_model.h"
-#include "silpose/body/human_for_test.h"
 #include "silpose/body/rigs_for_test.h"
 #include "silpose/body/stretchable.h"
 #include "silpose/body/test_body.h"
+#include "silpose/human/human_for_test.h"
 
 namespace silpose {
 namespace {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "silpose/base/rng.h"
-#include "silpose/body/human.h"
 #include "silpose/body/test_body.h"
+#include "silpose/human/human.h"
 
 namespace silpose {
 namespace {

@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "silpose/body/default_profile.h"
-#include "silpose/body/human_for_test.h"
 #include "silpose/body/human_profile.h"
 #include "silpose/body/rigs_for_test.h"
 #include "silpose/body/stretchable.h"
+#include "silpose/human/human_for_test.h"
 
 namespace silpose {
 namespace {

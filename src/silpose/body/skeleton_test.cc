@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "silpose/base/rng.h"
-#include "silpose/body/human.h"
 #include "silpose/body/human_profile.h"
+#include "silpose/human/human.h"
 
 namespace silpose {
 namespace {

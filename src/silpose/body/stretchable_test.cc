@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "silpose/body/human_for_test.h"
+#include "silpose/human/human_for_test.h"
 
 namespace silpose {
 namespace {

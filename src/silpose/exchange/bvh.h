@@ -11,7 +11,7 @@
 
 #include "silpose/base/result.h"
 #include "silpose/body/body_model.h"
-#include "silpose/body/clip.h"
+#include "silpose/mocap/clip.h"
 
 namespace silpose {
 

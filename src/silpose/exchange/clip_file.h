@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "silpose/base/result.h"
-#include "silpose/body/clip.h"
+#include "silpose/mocap/clip.h"
 
 namespace silpose {
 

@@ -8,8 +8,8 @@
 
 #include "silpose/base/rng.h"
 #include "silpose/base/text_file.h"
-#include "silpose/body/human.h"
 #include "silpose/body/test_body.h"
+#include "silpose/human/human.h"
 
 namespace silpose {
 namespace {

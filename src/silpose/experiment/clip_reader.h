@@ -14,7 +14,7 @@
 
 #include "silpose/base/result.h"
 #include "silpose/image/observation.h"
-#include "silpose/track/clip_instant.h"
+#include "silpose/offline/clip_instant.h"
 
 namespace silpose {
 

@@ -23,7 +23,7 @@ struct RunSettings {
   int frames = 0;                  // 0: all of a file or clip, 80 of any other motion
   std::string preset = "default";  // track/tracker_presets.h
   GivenOptions tracker;            // by name, on top of the preset
-  bool fit_body = false;           // track/body_fit.h: the clip is tracked, the body fitted, and the clip tracked again
+  bool fit_body = false;  // offline/body_fit.h: the clip is tracked, the body fitted, and the clip tracked again
   // The sequence.
   bool drawn_person = false;      // a person of its stature with other proportions (synth/drawn_person.h) is seen
   std::string motion = "static";  // synth/motion_source.h; one with a file extension lies under the data folder

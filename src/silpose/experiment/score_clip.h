@@ -9,7 +9,7 @@
 #include "silpose/experiment/recorded_clip.h"
 #include "silpose/experiment/run_result.h"
 #include "silpose/geometry/camera.h"
-#include "silpose/track/clip_instant.h"
+#include "silpose/offline/clip_instant.h"
 #include "silpose/track/step_report.h"
 
 namespace silpose {

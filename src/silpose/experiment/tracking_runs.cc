@@ -8,11 +8,11 @@
 #include "silpose/base/parallel.h"
 #include "silpose/experiment/score_clip.h"
 #include "silpose/experiment/score_run.h"
+#include "silpose/offline/body_fit.h"
+#include "silpose/offline/track_clip.h"
 #include "silpose/synth/degraded_mask.h"
 #include "silpose/synth/drawn_person.h"
 #include "silpose/synth/simulated_keypoints.h"
-#include "silpose/track/body_fit.h"
-#include "silpose/track/track_clip.h"
 #include "silpose/track/tracker_presets.h"
 
 namespace silpose {

@@ -18,8 +18,8 @@
 #include "silpose/experiment/recorded_clip.h"
 #include "silpose/experiment/run_result.h"
 #include "silpose/experiment/run_settings.h"
+#include "silpose/offline/clip_instant.h"
 #include "silpose/synth/scene.h"
-#include "silpose/track/clip_instant.h"
 
 namespace silpose {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "silpose/base/simd_targets.h"
-#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
+#include "silpose/human/human_for_test.h"
 #include "silpose/likelihood/coverage_difference.h"
 #include "silpose/likelihood/coverage_raster.h"
 #include "silpose/likelihood/coverage_reference.h"

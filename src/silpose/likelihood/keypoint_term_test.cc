@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "silpose/base/rng.h"
-#include "silpose/body/human_for_test.h"
+#include "silpose/human/human_for_test.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/shape/keypoint_axes.h"
 

@@ -7,10 +7,10 @@
 #include <set>
 #include <stdexcept>
 
-#include "silpose/body/human.h"
 #include "silpose/body/human_profile.h"
 #include "silpose/body/rigs_for_test.h"
 #include "silpose/body/test_body.h"
+#include "silpose/human/human.h"
 
 namespace silpose {
 namespace {

@@ -7,10 +7,10 @@
 #include <stdexcept>
 
 #include "silpose/base/parallel.h"
-#include "silpose/body/human.h"
 #include "silpose/body/human_profile.h"
 #include "silpose/body/test_body.h"
 #include "silpose/filter/estimate.h"
+#include "silpose/human/human.h"
 
 namespace silpose {
 namespace {

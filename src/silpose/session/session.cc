@@ -8,9 +8,9 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/clock.h"
+#include "silpose/offline/track_clip.h"
 #include "silpose/session/sink_queue.h"
 #include "silpose/track/open_questions.h"
-#include "silpose/track/track_clip.h"
 #include "silpose/track/tracker.h"
 
 namespace silpose {

@@ -17,12 +17,12 @@
 
 #include "silpose/base/progress.h"
 #include "silpose/base/result.h"
+#include "silpose/offline/body_fit.h"
 #include "silpose/recording/track_recording.h"
 #include "silpose/session/checkpoint.h"
 #include "silpose/session/observation_source.h"
 #include "silpose/session/sink.h"
 #include "silpose/session/stage_seconds.h"
-#include "silpose/track/body_fit.h"
 #include "silpose/track/tracker_options.h"
 
 namespace silpose {
@@ -36,7 +36,7 @@ struct CheckpointPlace {
 
 struct SessionOptions {
   TrackerOptions tracker;  // with body and cameras
-  bool fit_body = false;   // to the subject of a recorded clip, as far as the clip determines it (track/body_fit.h)
+  bool fit_body = false;   // to the subject of a recorded clip, as far as the clip determines it (offline/body_fit.h)
   // The pose [D] to start from, given the number of the first frame; nullopt: one is searched. May be empty.
   std::function<Result<std::optional<std::vector<double>>>(int64_t frame_idx)> initial_pose;
   std::vector<std::shared_ptr<SessionSink>> sinks;

@@ -8,8 +8,8 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/rng.h"
-#include "silpose/body/retarget.h"
 #include "silpose/exchange/clip_file.h"
+#include "silpose/mocap/retarget.h"
 
 namespace silpose {
 namespace {

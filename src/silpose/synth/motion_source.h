@@ -11,7 +11,7 @@
 
 #include "silpose/base/result.h"
 #include "silpose/body/body_model.h"
-#include "silpose/body/clip.h"
+#include "silpose/mocap/clip.h"
 
 namespace silpose {
 
@@ -26,7 +26,7 @@ struct SyntheticMotionOptions {
 struct SyntheticMotion {
   std::vector<std::vector<double>> poses;  // [T][D] metres, radians, inside the limits
   double fps = 30;
-  // Of a motion file: angle between its limbs and ours, degrees; see body/retarget.h.
+  // Of a motion file: angle between its limbs and ours, degrees; see mocap/retarget.h.
   std::optional<double> mean_residual_deg, max_residual_deg;
 };
 

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
+#include "silpose/human/human_for_test.h"
 
 namespace silpose {
 namespace {

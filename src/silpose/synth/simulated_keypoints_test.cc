@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "silpose/body/human_for_test.h"
 #include "silpose/body/test_body.h"
+#include "silpose/human/human_for_test.h"
 #include "silpose/shape/keypoint_axes.h"
 #include "silpose/synth/test_scene.h"
 

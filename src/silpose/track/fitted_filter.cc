@@ -7,7 +7,7 @@
 #include "silpose/base/clock.h"
 #include "silpose/base/state_bytes.h"
 #include "silpose/filter/log_weights.h"
-#include "silpose/track/pose_spread.h"
+#include "silpose/fit/pose_spread.h"
 
 namespace silpose {
 namespace {

@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "silpose/fit/body_error.h"
+#include "silpose/fit/plausibility.h"
 #include "silpose/likelihood/coverage_likelihood.h"
-#include "silpose/track/body_error.h"
 #include "silpose/track/mixture_filter.h"
-#include "silpose/track/plausibility.h"
 #include "silpose/track/pose_filter.h"
 #include "silpose/track/tracker_options.h"
 

@@ -6,8 +6,8 @@
 #include "silpose/base/parallel.h"
 #include "silpose/base/state_bytes.h"
 #include "silpose/filter/estimate.h"
+#include "silpose/fit/landmark_proposal.h"
 #include "silpose/track/fitted_filter.h"
-#include "silpose/track/landmark_proposal.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/sampling_filter.h"
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "silpose/fit/plausibility.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/render/silhouette.h"
-#include "silpose/track/plausibility.h"
 #include "silpose/track/pose_filter.h"
 #include "silpose/track/tracker_options.h"
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "silpose/filter/gaussian_mixture.h"
+#include "silpose/fit/limb_search.h"
+#include "silpose/fit/pose_fit.h"
 #include "silpose/likelihood/coverage_likelihood.h"
-#include "silpose/track/limb_search.h"
-#include "silpose/track/pose_fit.h"
 
 namespace silpose {
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "silpose/body/human_for_test.h"
+#include "silpose/human/human_for_test.h"
 
 namespace silpose {
 namespace {

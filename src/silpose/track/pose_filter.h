@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "silpose/filter/particle_set.h"
+#include "silpose/fit/initialisation.h"
+#include "silpose/fit/pose_spread.h"
 #include "silpose/image/observation.h"
-#include "silpose/track/initialisation.h"
-#include "silpose/track/pose_spread.h"
 #include "silpose/track/step_report.h"
 
 namespace silpose {

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "silpose/body/human_for_test.h"
+#include "silpose/human/human_for_test.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/track/tracker.h"
 

@@ -5,7 +5,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/clock.h"
-#include "silpose/track/limbs.h"
+#include "silpose/fit/limbs.h"
 #include "silpose/track/pose_estimate.h"
 
 namespace silpose {

@@ -4,9 +4,9 @@
 
 #include "silpose/base/check.h"
 #include "silpose/filter/resampling.h"
+#include "silpose/fit/landmark_proposal.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/motion/motion_model.h"
-#include "silpose/track/landmark_proposal.h"
 
 namespace silpose {
 namespace {

@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "silpose/base/parallel.h"
-#include "silpose/body/human_for_test.h"
 #include "silpose/body/rigs_for_test.h"
 #include "silpose/body/test_body.h"
+#include "silpose/human/human_for_test.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/track/keypoint_sides.h"
 #include "silpose/track/keypoints_for_test.h"
