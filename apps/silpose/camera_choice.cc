@@ -22,7 +22,7 @@ std::string name_list(const std::vector<PinholeCamera>& cameras) {
 constexpr double kShortest_mm35 = 8, kLongest_mm35 = 600;
 constexpr double kNarrowest_deg = 3, kWidest_deg = 140;
 
-FocalSource focal_source(const CameraOptions& options, const PictureSize& size) {
+FocalSource focal_source(const CameraOptions& options, const ImageSize& size) {
   if (options.focal_mm35) return {{focal_px_of_mm35(*options.focal_mm35, size.width, size.height), 0}, "--focal-mm35"};
   if (options.fov_deg) {
     return {{focal_px_of_view(to_radians(*options.fov_deg), size.width, size.height), 0}, "--fov-deg"};
@@ -71,14 +71,14 @@ nlohmann::ordered_json facts_of(const FocalSource& source) {
   return {{"mean", focal.mean}, {"std", focal.deviation}, {"from", source.from}};
 }
 
-std::vector<PictureSize> sizes_of(const Video& video) {
-  std::vector<PictureSize> sizes;
+std::vector<ImageSize> sizes_of(const Video& video) {
+  std::vector<ImageSize> sizes;
   sizes.reserve(static_cast<size_t>(video.num_cameras()));
   for (int c = 0; c < video.num_cameras(); ++c) sizes.push_back({video.width(c), video.height(c), video.focal_mm35(c)});
   return sizes;
 }
 
-Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<PictureSize>& sizes) {
+Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<ImageSize>& sizes) {
   CameraChoice choice;
   if (options.focal_mm35 && options.fov_deg) throw UsageError("--focal-mm35: not together with --fov-deg");
   if (options.has_file() && (options.focal_mm35 || options.fov_deg)) {

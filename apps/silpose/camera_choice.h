@@ -44,18 +44,18 @@ void add_camera_options(CLI::App& command, CameraOptions& options);
 // --focal-mm35 and --fov-deg, for commands that can do without a file.
 void add_focal_options(CLI::App& command, CameraOptions& options);
 
-struct PictureSize {
+struct ImageSize {
   int width = 0, height = 0;
   std::optional<double> focal_mm35 = {};  // by the clip's metadata
 };
 
 // Of each camera of a video.
-std::vector<PictureSize> sizes_of(const Video& video);
+std::vector<ImageSize> sizes_of(const Video& video);
 
 // One camera per picture size, in order, assumed where there is no file; without sizes all that the file, or
 // --camera-name, names. Errors: those of the file; a name that is not in it; another number of cameras; a camera
 // calibrated for another size. Throws UsageError for options that do not go together.
-Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<PictureSize>& sizes);
+Result<CameraChoice> choose_cameras(const CameraOptions& options, const std::vector<ImageSize>& sizes);
 
 // "focal length 960 ± 192 px (as phones and webcams have it)", of an estimate or of what was known before.
 std::string focal_text(const Estimated& focal_px, const FocalSource& source);

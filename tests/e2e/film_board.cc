@@ -15,8 +15,8 @@ namespace {
 constexpr Board kBoard{.columns = 8, .rows = 5, .square_m = 0.06};
 constexpr int kCarried = 30, kOnFloor = 5;  // frames
 
-PinholeCamera camera_at(const char* name, const Eigen::Vector3d& eye, double focal) {
-  PinholeCamera camera = look_at_camera(480, 360, focal, eye, {0, 0.45, 0});
+PinholeCamera camera_at(const char* name, const Eigen::Vector3d& camera_centre, double focal) {
+  PinholeCamera camera = look_at_camera(480, 360, focal, camera_centre, {0, 0.45, 0});
   camera.name = name;
   camera.cx += 4;
   camera.distortion = {-0.15, 0.04, 0.001, 0.0005, 0};

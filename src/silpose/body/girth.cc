@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "silpose/base/check.h"
-#include "silpose/body/flesh.h"
+#include "silpose/body/collision_spheres.h"
 
 namespace silpose {
 namespace {
@@ -26,7 +26,7 @@ Vector3d along_bone(const Skeleton& skeleton, size_t joint_idx, const Vector3d& 
 }  // namespace
 
 Girths::Girths(BodyModel body) : body_(std::move(body)), volume_(volume(body_.rest)) {
-  const auto centres = flesh_centres(body_);
+  const auto centres = segment_centres(body_);
   bones_.resize(centres.size());
   for (size_t j = 0; j < centres.size(); ++j) {
     if (!centres[j]) continue;

@@ -174,10 +174,11 @@ constexpr LandmarkRow kLandmarks[] = {
 // degrees out]
 constexpr double kSilhouetteArea = 0.1;
 
-constexpr const char* kJointNames[] = {
-    "root",           "abdomen",         "thorax",        "head",       "right_hip",     "right_thigh",    "right_shin",
-    "right_foot",     "left_hip",        "left_thigh",    "left_shin",  "left_foot",     "right_shoulder",
-    "right_upper_arm", "right_forearm",  "right_hand",    "left_shoulder", "left_upper_arm", "left_forearm", "left_hand"};
+constexpr const char* kJointNames[] = {"root",           "abdomen",         "thorax",        "head",
+                                       "right_hip",      "right_thigh",     "right_shin",    "right_foot",
+                                       "left_hip",       "left_thigh",      "left_shin",     "left_foot",
+                                       "right_shoulder", "right_upper_arm", "right_forearm", "right_hand",
+                                       "left_shoulder",  "left_upper_arm",  "left_forearm",  "left_hand"};
 
 void set_deviations(const Skeleton& skeleton, RigProfile& profile) {
   const auto set = [](std::span<const DeviationRow> table, const Dof& dof, double& deviation) {

@@ -26,10 +26,12 @@ std::vector<Eigen::Vector3d> round_joints() {
 class HumanSkeleton : public testing::Test {
  protected:
   const Skeleton skeleton = human_skeleton(round_joints());
-  EXPECT_TRUE(has_human_joints(skeleton));
   std::vector<double> pose = std::vector<double>(37, 0.0);
 
-  void SetUp() override { pose[1] = 1; }
+  void SetUp() override {
+    EXPECT_TRUE(has_human_joints(skeleton));
+    pose[1] = 1;
+  }
   void turn(const std::string& dof, double degrees) { pose.at(skeleton.find_dof(dof).value()) = to_radians(degrees); }
   Eigen::Vector3d joint(const std::string& name) {
     return skeleton.forward_kinematics(pose).at(skeleton.find_joint(name).value()).translation;

@@ -47,10 +47,10 @@ class BoardFilm {
 
   static double brightness(const Board& board, const Rigid3& board_from_cam, const Eigen::Vector3d& ray) {
     static constexpr double kWall = 120, kPaper = 215, kInk = 35;
-    const Eigen::Vector3d along = board_from_cam.rotation * ray, eye = board_from_cam.translation;
-    const double depth = -eye.z() / along.z();
+    const Eigen::Vector3d along = board_from_cam.rotation * ray, camera_centre = board_from_cam.translation;
+    const double depth = -camera_centre.z() / along.z();
     if (!(depth > 0)) return kWall;
-    const Eigen::Vector3d point = (eye + depth * along) / board.square_m;
+    const Eigen::Vector3d point = (camera_centre + depth * along) / board.square_m;
     const double x = point.x(), y = point.y();
     if (x < -2 || y < -2 || x > board.columns + 1 || y > board.rows + 1) return kWall;
     if (x < -1 || y < -1 || x > board.columns || y > board.rows) return kPaper;
@@ -62,12 +62,12 @@ class BoardFilm {
   std::vector<Eigen::Vector3d> rays_;  // kSamples a pixel, in the camera's frame
 };
 
-// The board with its middle at `middle` (world), its print towards `eye`, turned there by three angles (radians): about
-// its rows, its columns, and in its plane.
-inline Rigid3 board_towards(const Board& board, const Eigen::Vector3d& middle, const Eigen::Vector3d& eye,
+// The board with its middle at `middle` (world), its print towards `camera_centre`, turned there by three angles
+// (radians): about its rows, its columns, and in its plane.
+inline Rigid3 board_towards(const Board& board, const Eigen::Vector3d& middle, const Eigen::Vector3d& camera_centre,
                             const Eigen::Vector3d& turn) {
   Eigen::Matrix3d facing;  // columns: the board's x, y, z, the first seen level
-  facing.col(2) = (middle - eye).normalized();
+  facing.col(2) = (middle - camera_centre).normalized();
   facing.col(0) = facing.col(2).cross(Eigen::Vector3d::UnitY()).normalized();
   facing.col(1) = facing.col(2).cross(facing.col(0));
   Rigid3 pose;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "silpose/base/levenberg.h"
+#include "silpose/base/levenberg_marquardt.h"
 
 namespace silpose {
 namespace {
@@ -87,7 +87,7 @@ ViewNormals linearise(const Bundle& bundle, const std::vector<Eigen::Vector3d>& 
   return normals;
 }
 
-// A bundle with its cost, for descend().
+// A bundle with its cost, for levenberg_marquardt().
 class Adjustment {
  public:
   Adjustment(Bundle bundle, const std::vector<Eigen::Vector3d>& points, const std::vector<BundleView>& views)
@@ -172,8 +172,8 @@ double view_error(const Bundle& bundle, const std::vector<Eigen::Vector3d>& poin
 
 Bundle adjust(const Bundle& start, const std::vector<Eigen::Vector3d>& points, const std::vector<BundleView>& views) {
   Adjustment at(start, points, views);
-  descend(at, kMostSteps, {.relative = 1e-9},
-          [](const Adjustment& from, double damping) { return from.step(damping); });
+  levenberg_marquardt(at, kMostSteps, {.relative = 1e-9},
+                      [](const Adjustment& from, double damping) { return from.step(damping); });
   return at.bundle();
 }
 

@@ -71,8 +71,8 @@ std::vector<int64_t> chosen_instants(const Board& board, const std::vector<Camer
   return {instants.begin(), instants.end()};
 }
 
-// New world from old: the floor under the board, Y up, the board's middle the origin; +Z looks to `eye`.
-Rigid3 floor_from_world(const Board& board, const Rigid3& world_from_board, const Eigen::Vector3d& eye) {
+// New world from old: the floor under the board, Y up, the board's middle the origin; +Z looks to `camera_centre`.
+Rigid3 floor_from_world(const Board& board, const Rigid3& world_from_board, const Eigen::Vector3d& camera_centre) {
   const Eigen::Vector3d middle = world_from_board * Eigen::Vector3d((board.columns - 1) * board.square_m / 2,
                                                                     (board.rows - 1) * board.square_m / 2, 0);
   const Eigen::Vector3d up = -world_from_board.rotation.col(2);
@@ -80,7 +80,7 @@ Rigid3 floor_from_world(const Board& board, const Rigid3& world_from_board, cons
   for (const double sign : {1.0, -1.0}) {
     for (const int axis : {0, 1}) {
       const Eigen::Vector3d side = sign * world_from_board.rotation.col(axis);
-      if (side.dot(eye - middle) > towards.dot(eye - middle)) towards = side;
+      if (side.dot(camera_centre - middle) > towards.dot(camera_centre - middle)) towards = side;
     }
   }
   Rigid3 result;

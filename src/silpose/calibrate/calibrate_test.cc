@@ -16,8 +16,8 @@ using testing::HasSubstr;
 
 constexpr Board kBoard{.columns = 9, .rows = 6, .square_m = 0.06};
 
-PinholeCamera lens(const Eigen::Vector3d& eye, double focal, const char* name) {
-  PinholeCamera camera = look_at_camera(640, 480, focal, eye, {0, 0.4, 0});
+PinholeCamera lens(const Eigen::Vector3d& camera_centre, double focal, const char* name) {
+  PinholeCamera camera = look_at_camera(640, 480, focal, camera_centre, {0, 0.4, 0});
   camera.fy = 1.01 * focal;
   camera.cx += 7;
   camera.cy -= 5;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "silpose/base/check.h"
-#include "silpose/base/levenberg.h"
+#include "silpose/base/levenberg_marquardt.h"
 #include "silpose/base/median.h"
 
 namespace silpose {
@@ -246,8 +246,8 @@ std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> exte
       start[kLogHeight] = std::log(camera_height);
       PersonFit fit(view, windows, start);
       if (!std::isfinite(fit.cost())) continue;
-      descend(fit, kMostSteps, {.absolute = 1e-6},
-              [](const PersonFit& from, double damping) { return from.step(damping); });
+      levenberg_marquardt(fit, kMostSteps, {.absolute = 1e-6},
+                          [](const PersonFit& from, double damping) { return from.step(damping); });
       if (!best || fit.cost() < best->cost()) best = std::move(fit);
     }
   }
@@ -266,9 +266,9 @@ std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> exte
   estimate.num_frames = num_upright;
   std::vector<double> distances;
   for (const Place& place : best->places()) distances.push_back(std::exp(place[1]));
-  const Eigen::Vector3d eye(0, above, upper_median(std::move(distances)));
+  const Eigen::Vector3d camera_centre(0, above, upper_median(std::move(distances)));
   const Eigen::Vector3d ahead(0, -std::sin(at[kTilt]), -std::cos(at[kTilt]));
-  estimate.camera = look_at_camera(width, height, focal, eye, eye + ahead);
+  estimate.camera = look_at_camera(width, height, focal, camera_centre, camera_centre + ahead);
   const Eigen::Matrix3d roll = Eigen::AngleAxisd(at[kRoll], Eigen::Vector3d::UnitZ()).toRotationMatrix();
   estimate.camera.cam_from_world = Rigid3{roll, Eigen::Vector3d::Zero()} * estimate.camera.cam_from_world;
   return estimate;

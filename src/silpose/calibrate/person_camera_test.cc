@@ -15,8 +15,9 @@ const FocalPrior kUsual = usual_focal_length(640, 480);  // 480 px within 20 %
 
 PinholeCamera camera_at(double focal_px, double height, double tilt_deg) {
   const double tilt = to_radians(tilt_deg);
-  const Eigen::Vector3d eye(0, height, 6);
-  return look_at_camera(640, 480, focal_px, eye, eye + Eigen::Vector3d(0, -std::sin(tilt), -std::cos(tilt)));
+  const Eigen::Vector3d camera_centre(0, height, 6);
+  return look_at_camera(640, 480, focal_px, camera_centre,
+                        camera_centre + Eigen::Vector3d(0, -std::sin(tilt), -std::cos(tilt)));
 }
 
 // A straight, thin person whose nearest foot is 0.22 m in front of its axis and who stoops by 2 %, twelve times per

@@ -20,9 +20,9 @@ namespace silpose {
 // line with too few or too many values, other than the stated number of frames; names file and line.
 Result<Clip> read_bvh(const std::filesystem::path& path);
 
-// Every joint turns by three channels (Z, X, Y), in degrees, curves without jumps (steady_angles.h); roots, and joints
-// whose translation changes, move by three more. Joints are written depth first, a joint without children gets an end
-// site. Errors: not writable.
+// Every joint turns by three channels (Z, X, Y), in degrees, curves without jumps (unwrapped_euler.h); roots, and
+// joints whose translation changes, move by three more. Joints are written depth first, a joint without children gets
+// an end site. Errors: not writable.
 Result<void> write_bvh(const std::filesystem::path& path, const Clip& clip);
 
 // The motion of a skeleton, metres: poses [T][D]; an end point becomes the end site of its joint where that is a leaf.

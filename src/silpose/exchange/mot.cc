@@ -11,7 +11,7 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/text_file.h"
-#include "silpose/exchange/steady_angles.h"
+#include "silpose/exchange/unwrapped_euler.h"
 
 namespace silpose {
 namespace {

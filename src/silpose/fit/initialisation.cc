@@ -10,9 +10,9 @@
 
 #include "silpose/base/check.h"
 #include "silpose/base/parallel.h"
+#include "silpose/fit/depth_ambiguity_moves.h"
 #include "silpose/fit/limb_search.h"
 #include "silpose/fit/limb_variants.h"
-#include "silpose/fit/picture_moves.h"
 #include "silpose/fit/place_on_mask.h"
 
 namespace silpose {
@@ -70,21 +70,22 @@ struct Candidate {
 };
 
 // What candidates are fitted to.
-struct Sight {
+struct StartContext {
   const CoverageLikelihood& likelihood;
-  const Plausibility& plausibility;
+  const PosePrior& pose_prior;
   const CoverageEvidence& evidence;
-  Eigen::Vector3d eye;  // of the first camera that is used
+  Eigen::Vector3d camera_centre;  // of the first camera that is used
 
   [[nodiscard]] const BodyModel& body() const { return likelihood.body(); }
 };
 
-void fit_all(const Sight& sight, std::span<const FitStage> stages, std::vector<Candidate>& candidates) {
+void fit_all(const StartContext& context, std::span<const FitStage> stages, std::vector<Candidate>& candidates) {
   parallel_for(candidates.size(), 1, [&](size_t begin, size_t end) {
-    CoverageLikelihood::Scratch scratch(sight.likelihood);
+    CoverageLikelihood::Scratch scratch(context.likelihood);
     for (size_t i = begin; i < end; ++i) {
       Candidate& c = candidates[i];
-      c.fit = fit_pose(sight.likelihood, sight.plausibility, sight.evidence, c.prior, c.fit.pose, stages, {}, scratch);
+      c.fit =
+          fit_pose(context.likelihood, context.pose_prior, context.evidence, c.prior, c.fit.pose, stages, {}, scratch);
     }
   });
 }
@@ -112,36 +113,37 @@ void keep_distinct(const BodyModel& body, double distance, size_t most, std::vec
 }
 
 // Of the best starts, with the limbs that look most promising.
-std::vector<Candidate> promising_variants(const Sight& sight, std::span<const Candidate> starts,
-                                          const InitialisationOptions& options, uint64_t stream) {
-  const std::vector<Limb>& limbs = sight.body().profile.limbs;
+std::vector<Candidate> ranked_variants(const StartContext& context, std::span<const Candidate> starts,
+                                       const InitialisationOptions& options, uint64_t stream) {
+  const std::vector<Limb>& limbs = context.body().profile.limbs;
   const LimbSearchOptions search{options.num_random_limbs, options.num_fitted, kNovelty, kTwoAtOnce};
   std::vector<std::vector<LimbVariant>> variants(std::min(starts.size(), static_cast<size_t>(options.num_varied)));
   parallel_for(variants.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       Rng rng(options.seed, stream, i);
-      variants[i] =
-          promising_limbs(sight.likelihood, sight.evidence, limbs, view(starts[i].fit.pose), sight.eye, search, rng);
+      variants[i] = rank_limb_variants(context.likelihood, context.evidence, limbs, view(starts[i].fit.pose),
+                                       context.camera_centre, search, rng);
     }
   });
   std::vector<Candidate> chosen;
   for (const auto& of_start : variants) {
-    for (const LimbVariant& variant : of_start) chosen.push_back(candidate_at(sight.body(), variant.pose));
+    for (const LimbVariant& variant : of_start) chosen.push_back(candidate_at(context.body(), variant.pose));
   }
   return chosen;
 }
 
 // Poses that look like the best starts and are far from them: two exchanged limbs cannot be corrected one by one.
-std::vector<Candidate> distant_variants(const Sight& sight, std::span<const Candidate> starts,
+std::vector<Candidate> distant_variants(const StartContext& context, std::span<const Candidate> starts,
                                         const InitialisationOptions& options, uint64_t index) {
   std::vector<Candidate> chosen;
   for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
     Rng rng(options.seed, kDistantStream - index, i);
-    for (const auto& pose : picture_moves(sight.body(), view(starts[i].fit.pose), sight.eye, rng)) {
-      chosen.push_back(candidate_at(sight.body(), pose));
+    for (const auto& pose :
+         depth_ambiguity_moves(context.body(), view(starts[i].fit.pose), context.camera_centre, rng)) {
+      chosen.push_back(candidate_at(context.body(), pose));
     }
   }
-  fit_all(sight, kDistantStages, chosen);
+  fit_all(context, kDistantStages, chosen);
   return chosen;
 }
 
@@ -174,10 +176,10 @@ struct LimbRounds {
 
 // Other limbs for one heading's starts, round by round, until the best explains the silhouette or progress stops. One
 // round is always worth it: what explains a silhouette may do so with right and left exchanged.
-void search_limbs(const Sight& sight, const InitialisationOptions& options, const LimbRounds& rounds,
+void search_limbs(const StartContext& context, const InitialisationOptions& options, const LimbRounds& rounds,
                   std::vector<Candidate>& starts) {
   const auto keep = [&] {
-    keep_distinct(sight.body(), options.merge_distance, static_cast<size_t>(options.num_starts), starts);
+    keep_distinct(context.body(), options.merge_distance, static_cast<size_t>(options.num_starts), starts);
   };
   keep();
   int stale = 0;
@@ -187,12 +189,12 @@ void search_limbs(const Sight& sight, const InitialisationOptions& options, cons
     if (round >= kStaleRounds && energy > std::max(kHopelessRatio * rounds.least, kHopeless)) return;
     const double before = starts.front().cost();
     const auto stream = rounds.index * static_cast<uint64_t>(options.num_rounds) + static_cast<uint64_t>(round);
-    std::vector<Candidate> variants = promising_variants(sight, starts, options, stream);
+    std::vector<Candidate> variants = ranked_variants(context, starts, options, stream);
     const std::span stages(kVariantStages);
-    fit_all(sight, stages.first(1), variants);
+    fit_all(context, stages.first(1), variants);
     sort_best_first(variants);
     variants.resize(static_cast<size_t>(std::ceil(options.share_fitted_finely * static_cast<double>(variants.size()))));
-    fit_all(sight, stages.subspan(1), variants);
+    fit_all(context, stages.subspan(1), variants);
     std::ranges::move(variants, std::back_inserter(starts));
     keep();
     stale = starts.front().cost() > kStaleCost * before ? stale + 1 : 0;
@@ -201,7 +203,7 @@ void search_limbs(const Sight& sight, const InitialisationOptions& options, cons
 
 }  // namespace
 
-std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const PosePrior& pose_prior,
                                      std::span<const Observation> observations, const StateBatch& candidates,
                                      const InitialisationOptions& options) {
   check(candidates.rows() > 0, "initialise: no candidates");
@@ -217,26 +219,26 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   for (size_t k = 0; k < starts.size(); ++k) {
     starts[k] = candidate_at(body, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
   }
-  const Sight sight{likelihood, plausibility, evidence, camera.centre_in_world()};
+  const StartContext context{likelihood, pose_prior, evidence, camera.centre_in_world()};
   const auto has_keypoints = [](const CoverageEvidence::View& view) { return view.keypoints != nullptr; };
   const double facing_bonus = std::ranges::any_of(evidence.views, has_keypoints) ? 0 : options.facing_bonus;
-  fit_all(sight, kCoarseStages, starts);
+  fit_all(context, kCoarseStages, starts);
   sort_best_first(starts);
   std::array<int, kNumSectors> taken{};
   const int most = options.num_per_heading * (body.profile.heading ? 1 : kNumSectors);
   std::erase_if(starts, [&](const Candidate& c) {
     return ++taken[static_cast<size_t>(heading_sector(body.profile, c.fit.pose))] > most;
   });
-  fit_all(sight, kFineStages, starts);
+  fit_all(context, kFineStages, starts);
   sort_best_first(starts);
 
   // The whole body mirrored in depth looks almost the same.
   std::vector<Candidate> mirrored;
   for (size_t i = 0; i < std::min(starts.size(), static_cast<size_t>(options.num_varied)); ++i) {
-    const std::vector<double> pose = mirrored_in_depth(body, view(starts[i].fit.pose), sight.eye);
+    const std::vector<double> pose = mirrored_in_depth(body, view(starts[i].fit.pose), context.camera_centre);
     if (!pose.empty()) mirrored.push_back(candidate_at(body, pose));
   }
-  fit_all(sight, kFineStages, mirrored);
+  fit_all(context, kFineStages, mirrored);
   std::ranges::move(mirrored, std::back_inserter(starts));
 
   // The quality of the best fit shows how much the differences between fits mean. During the search, outlines are taken
@@ -255,7 +257,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   for (size_t i = 0; i < headings.size(); ++i) {
     const size_t h = (static_cast<size_t>(options.first_heading) + i) % headings.size();
     if (std::cmp_less(i, options.num_headings) && least > kExplained) {
-      search_limbs(sight, options, {h, least, kStaleRounds}, headings[h]);
+      search_limbs(context, options, {h, least, kStaleRounds}, headings[h]);
     }
     least = std::min(least, headings[h].front().fit.energy);
     std::ranges::move(headings[h], std::back_inserter(starts));
@@ -263,14 +265,14 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   // The best of all once more, against each other; then from poses that look like them and are far away, while it
   // helps.
   uint64_t index = headings.size();
-  search_limbs(sight, options, {index++, least, options.patience}, starts);
+  search_limbs(context, options, {index++, least, options.patience}, starts);
   for (int round = 0; round < options.num_distant_rounds && starts.front().fit.energy > kExplained; ++round) {
     const double before = starts.front().cost();
-    std::vector<Candidate> distant = distant_variants(sight, starts, options, index);
+    std::vector<Candidate> distant = distant_variants(context, starts, options, index);
     if (distant.empty()) break;
-    search_limbs(sight, options, {index++, starts.front().fit.energy, kStaleRounds}, distant);
+    search_limbs(context, options, {index++, starts.front().fit.energy, kStaleRounds}, distant);
     std::ranges::move(distant, std::back_inserter(starts));
-    search_limbs(sight, options, {index++, starts.front().fit.energy, options.patience}, starts);
+    search_limbs(context, options, {index++, starts.front().fit.energy, options.patience}, starts);
     if (starts.front().cost() > kStaleCost * before) break;
   }
 

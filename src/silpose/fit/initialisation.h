@@ -41,7 +41,7 @@ struct StartingPose {
 
 // Starting poses, best first; at least one. Shapes: one observation per camera; candidates [K, D], whose root
 // translation is replaced. REQUIRES: an observation in which something was found.
-std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const PosePrior& pose_prior,
                                      std::span<const Observation> observations, const StateBatch& candidates,
                                      const InitialisationOptions& options = {});
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "silpose/base/check.h"
-#include "silpose/base/levenberg.h"
+#include "silpose/base/levenberg_marquardt.h"
 #include "silpose/base/parallel.h"
 #include "silpose/likelihood/keypoint_term.h"
 
@@ -100,8 +100,8 @@ StateBatch LandmarkProposal::propose(const Observation& observation, int num_can
       Eigen::VectorXd pose = poses.row(static_cast<Eigen::Index>(k)).transpose();
       place_root(body_->skeleton, body_->profile, {pose.data(), static_cast<size_t>(pose.size())}, root);
       fits[k] = problem.at(std::move(pose));
-      descend(fits[k], kMostIterations, kSmallestGain,
-              [&](const Fit& from, double damping) { return problem.step(from, damping); });
+      levenberg_marquardt(fits[k], kMostIterations, kSmallestGain,
+                          [&](const Fit& from, double damping) { return problem.step(from, damping); });
     }
   });
   std::ranges::stable_sort(fits, {}, &Fit::sum);

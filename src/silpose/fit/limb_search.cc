@@ -8,12 +8,13 @@
 
 namespace silpose {
 
-std::vector<LimbVariant> promising_limbs(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence,
-                                         std::span<const Limb> limbs, std::span<const double> pose,
-                                         const Eigen::Vector3d& eye, const LimbSearchOptions& options, Rng& rng) {
+std::vector<LimbVariant> rank_limb_variants(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence,
+                                            std::span<const Limb> limbs, std::span<const double> pose,
+                                            const Eigen::Vector3d& camera_centre, const LimbSearchOptions& options,
+                                            Rng& rng) {
   const BodyModel& body = likelihood.body();
   std::vector<LimbVariant> variants =
-      limb_variants(body, limbs, pose, eye, options.num_random, options.two_at_once, rng);
+      limb_variants(body, limbs, pose, camera_centre, options.num_random, options.two_at_once, rng);
   std::vector<double> energy(variants.size());
   parallel_for(variants.size(), 8, [&](size_t begin, size_t end) {
     CoverageLikelihood::Scratch scratch(likelihood);

@@ -1,4 +1,4 @@
-// promising_limbs(): of all poses that differ from one in a limb (limb_variants.h), the few that are worth a fit.
+// rank_limb_variants(): of all poses that differ from one in a limb (limb_variants.h), the few that are worth a fit.
 // Threads: a function without state; uses all cores and gives the same result on any number.
 #pragma once
 
@@ -17,10 +17,11 @@ struct LimbSearchOptions {
   double two_at_once = 0;  // share of the random limbs to which a second one is added
 };
 
-// Best first by one evaluation at Blur::k4. Shapes: pose [D]; limbs of the likelihood's body. `eye`: where the camera
-// is.
-std::vector<LimbVariant> promising_limbs(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence,
-                                         std::span<const Limb> limbs, std::span<const double> pose,
-                                         const Eigen::Vector3d& eye, const LimbSearchOptions& options, Rng& rng);
+// Best first by one evaluation at Blur::k4. Shapes: pose [D]; limbs of the likelihood's body. `camera_centre`: where
+// the camera is.
+std::vector<LimbVariant> rank_limb_variants(const CoverageLikelihood& likelihood, const CoverageEvidence& evidence,
+                                            std::span<const Limb> limbs, std::span<const double> pose,
+                                            const Eigen::Vector3d& camera_centre, const LimbSearchOptions& options,
+                                            Rng& rng);
 
 }  // namespace silpose

@@ -30,13 +30,13 @@ std::vector<std::vector<double>> exchanged_limbs(const RigProfile& profile, std:
 }
 
 std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Limb& limb, std::span<const double> pose,
-                                                const Eigen::Vector3d& eye) {
+                                                const Eigen::Vector3d& camera_centre) {
   constexpr double kReached = 0.05;  // [guess] metres
   std::vector<std::vector<double>> variants;
   const std::vector<LimbPoint> points = limb_points(body, limb);
   if (points.size() < 2) return variants;
   const std::vector<Eigen::Vector3d> x = positions(body.skeleton, points, pose);
-  const Eigen::Vector3d ray = (x.front() - eye).normalized();
+  const Eigen::Vector3d ray = (x.front() - camera_centre).normalized();
   const size_t num_segments = points.size() - 1;
   const auto add_reflection = [&](size_t first, size_t last) {
     std::vector<Eigen::Vector3d> targets = x;
@@ -73,10 +73,12 @@ std::vector<double> random_limb(const Skeleton& skeleton, const Limb& limb, std:
 }
 
 std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Limb> limbs, std::span<const double> pose,
-                                       const Eigen::Vector3d& eye, int num_random, double two_at_once, Rng& rng) {
+                                       const Eigen::Vector3d& camera_centre, int num_random, double two_at_once,
+                                       Rng& rng) {
   std::vector<LimbVariant> variants;
   for (size_t l = 0; l < limbs.size(); ++l) {
-    for (auto& reflected : reflected_limb(body, limbs[l], pose, eye)) variants.push_back({{l}, std::move(reflected)});
+    for (auto& reflected : reflected_limb(body, limbs[l], pose, camera_centre))
+      variants.push_back({{l}, std::move(reflected)});
   }
   for (const auto& [a, b] : body.profile.limb_pairs) {
     LimbVariant exchanged{{a, b}, {pose.begin(), pose.end()}};
@@ -96,7 +98,8 @@ std::vector<LimbVariant> limb_variants(const BodyModel& body, std::span<const Li
   return variants;
 }
 
-std::vector<double> mirrored_in_depth(const BodyModel& body, std::span<const double> pose, const Eigen::Vector3d& eye) {
+std::vector<double> mirrored_in_depth(const BodyModel& body, std::span<const double> pose,
+                                      const Eigen::Vector3d& camera_centre) {
   const Skeleton& skeleton = body.skeleton;
   const std::optional<int> turn = body.profile.heading;
   if (!turn || !body.profile.facing) return {};
@@ -121,8 +124,8 @@ std::vector<double> mirrored_in_depth(const BodyModel& body, std::span<const dou
     const bool stays = std::abs(axes.col(static_cast<Eigen::Index>(d)).dot(across)) >= 0.5;
     if (!paired[d] && !skeleton.dofs()[d].is_translation && !stays) mirrored[d] = -mirrored[d];
   }
-  // From the body's own mirror plane to the one through the root that faces the eye.
-  const Eigen::Vector3d towards = eye - root;
+  // From the body's own mirror plane to the one through the root that faces the camera_centre.
+  const Eigen::Vector3d towards = camera_centre - root;
   double& heading = mirrored[static_cast<size_t>(*turn)];
   heading =
       wrap_angle(heading + kPi + 2 * std::atan2(towards.x(), towards.z()) - 2 * std::atan2(facing.x(), facing.z()));

@@ -62,11 +62,11 @@ std::vector<double> walking_pose() {
 TEST(ReflectedLimb, KeepsWhereTheJointsAreSeenFromAfar) {
   const BodyModel& body = human();
   const std::vector<double> pose = walking_pose();
-  const Eigen::Vector3d eye(0, 1, 200);  // far: perspective is negligible
+  const Eigen::Vector3d camera_centre(0, 1, 200);  // far: perspective is negligible
   const auto before = landmark_positions(body, pose);
   int found = 0;
   for (const Limb& limb : body.profile.limbs) {
-    for (const auto& variant : reflected_limb(body, limb, pose, eye)) {
+    for (const auto& variant : reflected_limb(body, limb, pose, camera_centre)) {
       ++found;
       const auto after = landmark_positions(body, variant);
       double in_picture = 0, in_depth = 0;
@@ -88,9 +88,9 @@ TEST(ReflectedLimb, KeepsWhereTheJointsAreSeenFromAfar) {
 TEST(MirroredInDepth, IsTheReflectionOfEveryJointWithItsPartner) {
   const BodyModel& body = human();
   const std::vector<double> pose = walking_pose();
-  const Eigen::Vector3d eye(2, 1, 5), root(pose[0], pose[1], pose[2]);
-  const std::vector<double> mirrored = mirrored_in_depth(body, pose, eye);
-  Eigen::Vector3d normal = eye - root;
+  const Eigen::Vector3d camera_centre(2, 1, 5), root(pose[0], pose[1], pose[2]);
+  const std::vector<double> mirrored = mirrored_in_depth(body, pose, camera_centre);
+  Eigen::Vector3d normal = camera_centre - root;
   normal.y() = 0;
   normal.normalize();
   const auto names = landmark_names(body);
@@ -111,12 +111,13 @@ TEST(MirroredInDepth, IsTheReflectionOfEveryJointWithItsPartner) {
 TEST(MirroredInDepth, FollowsTheRigsOwnAxes) {
   const BodyModel tube = make_test_body();
   BodyModel turned = make_rotations_first_body();
-  const Eigen::Vector3d eye(2, 1, 5);
+  const Eigen::Vector3d camera_centre(2, 1, 5);
   const std::vector<double> pose = {0.3, 0.6, -0.4, 0.5, 0.4, -0.3, 0.2, 0.6};
-  EXPECT_TRUE(mirrored_in_depth(turned, rotations_first(pose), eye).empty());  // it is not known where it faces
+  EXPECT_TRUE(
+      mirrored_in_depth(turned, rotations_first(pose), camera_centre).empty());  // it is not known where it faces
   turned.profile.facing = Eigen::Vector3d(0, -1, 0);
-  EXPECT_LT(furthest_apart(landmark_positions(turned, mirrored_in_depth(turned, rotations_first(pose), eye)),
-                           landmark_positions(tube, mirrored_in_depth(tube, pose, eye))),
+  EXPECT_LT(furthest_apart(landmark_positions(turned, mirrored_in_depth(turned, rotations_first(pose), camera_centre)),
+                           landmark_positions(tube, mirrored_in_depth(tube, pose, camera_centre))),
             1e-12);
 }
 
@@ -139,10 +140,10 @@ TEST(LimbVariants, MoveOneLimbOrTwoAndNothingElse) {
   const BodyModel& body = human();
   const std::vector<Limb>& limbs = body.profile.limbs;
   const std::vector<double> pose = walking_pose();
-  const Eigen::Vector3d eye(2, 1, 5);
+  const Eigen::Vector3d camera_centre(2, 1, 5);
   const auto with = [&](int num_random, double two_at_once) {
     Rng rng(5);
-    return limb_variants(body, limbs, pose, eye, num_random, two_at_once, rng);
+    return limb_variants(body, limbs, pose, camera_centre, num_random, two_at_once, rng);
   };
   const auto given = with(0, 0);  // reflections and exchanges come first
   for (const double two_at_once : {0.0, 0.5, 1.0}) {

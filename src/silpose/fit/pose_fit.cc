@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
-#include "silpose/base/levenberg.h"
+#include "silpose/base/levenberg_marquardt.h"
 
 namespace silpose {
 namespace {
@@ -20,7 +20,7 @@ struct Point {
   [[nodiscard]] double cost() const { return energy + prior_cost + other_cost; }
 };
 
-Point evaluate(const CoverageLikelihood& likelihood, const Plausibility& plausibility, const CoverageEvidence& evidence,
+Point evaluate(const CoverageLikelihood& likelihood, const PosePrior& pose_prior, const CoverageEvidence& evidence,
                const PosePrior& prior, Blur blur, Eigen::VectorXd pose, double rest_weight,
                CoverageLikelihood::Scratch& scratch) {
   Point point;
@@ -35,7 +35,7 @@ Point evaluate(const CoverageLikelihood& likelihood, const Plausibility& plausib
   point.hessian = std::move(equations.hessian);
   point.hessian += prior.information;
   point.other_cost =
-      plausibility.add(point.pose, {rest_weight, evidence.has_directions()}, point.gradient, point.hessian);
+      pose_prior.add(point.pose, {rest_weight, evidence.has_directions()}, point.gradient, point.hessian);
   return point;
 }
 
@@ -59,25 +59,24 @@ void clamp_to_limits(const Skeleton& skeleton, Eigen::VectorXd& pose) {
   }
 }
 
-PoseFit fit_pose(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
-                 const CoverageEvidence& evidence, const PosePrior& prior, const Eigen::VectorXd& start,
-                 std::span<const FitStage> stages, const PoseFitOptions& options,
-                 CoverageLikelihood::Scratch& scratch) {
+PoseFit fit_pose(const CoverageLikelihood& likelihood, const PosePrior& pose_prior, const CoverageEvidence& evidence,
+                 const PosePrior& prior, const Eigen::VectorXd& start, std::span<const FitStage> stages,
+                 const PoseFitOptions& options, CoverageLikelihood::Scratch& scratch) {
   check(!stages.empty(), "fit_pose: no stage");
   const Skeleton& skeleton = likelihood.body().skeleton;
   PoseFit fit;
   Point at;
   at.pose = start;
   for (const FitStage& stage : stages) {
-    at = evaluate(likelihood, plausibility, evidence, prior, stage.blur, std::move(at.pose), options.rest_weight,
-                  scratch);
-    descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) {
+    at =
+        evaluate(likelihood, pose_prior, evidence, prior, stage.blur, std::move(at.pose), options.rest_weight, scratch);
+    levenberg_marquardt(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) {
       Eigen::MatrixXd damped = from.hessian;
       damped.diagonal() *= 1 + damping;
       damped.diagonal().array() += 1e-9;
       Eigen::VectorXd step = -damped.ldlt().solve(from.gradient);
       limit_step(skeleton, options, step);
-      return std::optional(evaluate(likelihood, plausibility, evidence, prior, stage.blur, from.pose + step,
+      return std::optional(evaluate(likelihood, pose_prior, evidence, prior, stage.blur, from.pose + step,
                                     options.rest_weight, scratch));
     });
   }

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "silpose/fit/plausibility.h"
+#include "silpose/fit/pose_prior.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 
 namespace silpose {
@@ -29,20 +29,20 @@ struct PoseFit {
   Eigen::VectorXd pose;         // [D] within the limits
   double energy = 0;            // E at the last stage's blur
   double prior_cost = 0;        // of the prior and of implausibility
-  Eigen::MatrixXd information;  // [D, D] of the silhouette, the prior and plausibility
+  Eigen::MatrixXd information;  // [D, D] of the silhouette, the prior and pose_prior
   [[nodiscard]] double cost() const { return energy + prior_cost; }
 };
 
 struct PoseFitOptions {
   double max_rotation = 0.35;    // radians per step
   double max_translation = 0.3;  // metres per step
-  double rest_weight = 1;        // plausibility.h
+  double rest_weight = 1;        // pose_prior.h
 };
 
 // From `start` [D], stage by stage. Errors: throws std::invalid_argument without a stage.
-PoseFit fit_pose(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
-                 const CoverageEvidence& evidence, const PosePrior& prior, const Eigen::VectorXd& start,
-                 std::span<const FitStage> stages, const PoseFitOptions& options, CoverageLikelihood::Scratch& scratch);
+PoseFit fit_pose(const CoverageLikelihood& likelihood, const PosePrior& pose_prior, const CoverageEvidence& evidence,
+                 const PosePrior& prior, const Eigen::VectorXd& start, std::span<const FitStage> stages,
+                 const PoseFitOptions& options, CoverageLikelihood::Scratch& scratch);
 
 // Clamps what is limited, and keeps the whole turns of what is not: unlike Skeleton::clamp, which wraps. [D]
 void clamp_to_limits(const Skeleton& skeleton, Eigen::VectorXd& pose);

@@ -30,14 +30,14 @@ class PoseFitTest : public ::testing::Test {
   std::shared_ptr<const BodyModel> body_ = std::make_shared<BodyModel>(make_test_body());
   PinholeCamera camera_ = look_at_camera(320, 240, 300, {0, 1.2, 4.5}, {0, 0.75, 0});
   CoverageLikelihood likelihood_{body_, {camera_}};
-  Plausibility plausibility_{body_, true};
+  PosePrior pose_prior_{body_, true};
 };
 
 TEST_F(PoseFitTest, ClimbsToTheTruthFromAfar) {
   const std::vector<double> truth = {0.3, 0.5, 0, 0, 0, 0.5, 0, -0.4}, start = {0, 0.6, 0, 0, 0, 0, 0, 0};
   CoverageLikelihood::Scratch scratch(likelihood_);
   const PoseFit fit =
-      fit_pose(likelihood_, plausibility_, see(truth), prior(start, 0.5), vector_of(start), kStartStages, {}, scratch);
+      fit_pose(likelihood_, pose_prior_, see(truth), prior(start, 0.5), vector_of(start), kStartStages, {}, scratch);
   EXPECT_NEAR(fit.pose[0], truth[0], 0.02);
   EXPECT_NEAR(fit.pose[1], truth[1], 0.02);
   EXPECT_NEAR(fit.pose[7] + fit.pose[5], truth[7] + truth[5], 0.15);
@@ -46,8 +46,8 @@ TEST_F(PoseFitTest, ClimbsToTheTruthFromAfar) {
 TEST_F(PoseFitTest, AStrongPriorHolds) {
   const std::vector<double> truth = {0.3, 0.5, 0, 0, 0, 0.5, 0, 0}, mean = {0, 0.5, 0, 0, 0, 0, 0, 0};
   CoverageLikelihood::Scratch scratch(likelihood_);
-  const PoseFit fit = fit_pose(likelihood_, plausibility_, see(truth), prior(mean, 1e-5), vector_of(mean),
-                               kTrackingStages, {}, scratch);
+  const PoseFit fit =
+      fit_pose(likelihood_, pose_prior_, see(truth), prior(mean, 1e-5), vector_of(mean), kTrackingStages, {}, scratch);
   EXPECT_LT((fit.pose - vector_of(mean)).cwiseAbs().maxCoeff(), 1e-3);
 }
 
@@ -58,7 +58,7 @@ TEST_F(PoseFitTest, StaysInsideTheLimits) {
   truth[5] = dofs[5].upper + 0.4;
   CoverageLikelihood::Scratch scratch(likelihood_);
   const PoseFit fit =
-      fit_pose(likelihood_, plausibility_, see(truth), prior(std::vector<double>{0, 0.5, 0, 0, 0, 0, 0, 0}, 2),
+      fit_pose(likelihood_, pose_prior_, see(truth), prior(std::vector<double>{0, 0.5, 0, 0, 0, 0, 0, 0}, 2),
                vector_of({0, 0.5, 0, 0, 0, 0.3, 0, 0}), kTrackingStages, {}, scratch);
   for (int d = 4; d < 8; ++d) {
     EXPECT_GE(fit.pose[d], dofs[static_cast<size_t>(d)].lower);
@@ -69,7 +69,7 @@ TEST_F(PoseFitTest, StaysInsideTheLimits) {
 TEST_F(PoseFitTest, NothingInThePictureLeavesThePrior) {
   std::vector<double> away = {0, 0.5, 40, 0, 0, 0, 0, 0};  // behind the camera
   CoverageLikelihood::Scratch scratch(likelihood_);
-  const PoseFit fit = fit_pose(likelihood_, plausibility_, see({0, 0.5, 0, 0, 0, 0, 0, 0}), prior(away, 0.1),
+  const PoseFit fit = fit_pose(likelihood_, pose_prior_, see({0, 0.5, 0, 0, 0, 0, 0, 0}), prior(away, 0.1),
                                vector_of(away), kTrackingStages, {}, scratch);
   EXPECT_TRUE(fit.pose.isApprox(vector_of(away), 1e-9));
 }

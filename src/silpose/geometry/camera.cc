@@ -102,14 +102,15 @@ PinholeCamera PinholeCamera::resized(int new_width, int new_height) const {
 }
 
 PinholeCamera default_camera(int width, int height, double distance) {
-  const Eigen::Vector3d eye(0, 1.5, distance);
-  return look_at_camera(width, height, 1.2 * std::max(width, height), eye, eye - Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d camera_centre(0, 1.5, distance);
+  return look_at_camera(width, height, 1.2 * std::max(width, height), camera_centre,
+                        camera_centre - Eigen::Vector3d::UnitZ());
 }
 
-PinholeCamera look_at_camera(int width, int height, double focal_px, const Eigen::Vector3d& eye,
+PinholeCamera look_at_camera(int width, int height, double focal_px, const Eigen::Vector3d& camera_centre,
                              const Eigen::Vector3d& target) {
   check(width > 0 && height > 0 && focal_px > 0, "camera of {} x {} pixels, focal length {}", width, height, focal_px);
-  const Eigen::Vector3d along = target - eye;
+  const Eigen::Vector3d along = target - camera_centre;
   check(along.norm() > 1e-9, "a camera cannot look at its own position");
   const Eigen::Vector3d forward = along.normalized();
   Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitY());
@@ -124,7 +125,7 @@ PinholeCamera look_at_camera(int width, int height, double focal_px, const Eigen
   camera.cam_from_world.rotation.row(0) = right;
   camera.cam_from_world.rotation.row(1) = forward.cross(right);
   camera.cam_from_world.rotation.row(2) = forward;
-  camera.cam_from_world.translation = -(camera.cam_from_world.rotation * eye);
+  camera.cam_from_world.translation = -(camera.cam_from_world.rotation * camera_centre);
   return camera;
 }
 

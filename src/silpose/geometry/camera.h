@@ -49,8 +49,8 @@ struct PinholeCamera {
 // focal length 1.2 x the larger side. A plain viewpoint; users' cameras: calibrate/focal_prior.h.
 PinholeCamera default_camera(int width, int height, double distance = 5.5);
 
-// A camera at `eye` that looks at `target`, +Y up in the picture. Metres; focal length in pixels.
-PinholeCamera look_at_camera(int width, int height, double focal_px, const Eigen::Vector3d& eye,
+// A camera at `camera_centre` that looks at `target`, +Y up in the picture. Metres; focal length in pixels.
+PinholeCamera look_at_camera(int width, int height, double focal_px, const Eigen::Vector3d& camera_centre,
                              const Eigen::Vector3d& target);
 
 }  // namespace silpose

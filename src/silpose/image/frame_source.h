@@ -14,7 +14,7 @@
 
 namespace silpose {
 
-struct Picture {
+struct TimedImage {
   ByteImage image;                 // [H, W, 3] B, G, R
   std::optional<int64_t> time_ns;  // since the first picture; nullopt where the input has no time for it
 };
@@ -27,7 +27,7 @@ class FrameSource {
   [[nodiscard]] virtual const std::string& name() const = 0;
 
   // The next picture, nullopt at the end. Errors: unreadable.
-  virtual Result<std::optional<Picture>> next() = 0;
+  virtual Result<std::optional<TimedImage>> next() = 0;
 
   // Back to the first picture. May forget what follows until that is read. Errors: a live camera; the input vanished.
   virtual Result<void> rewind() = 0;

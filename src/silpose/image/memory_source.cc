@@ -19,9 +19,9 @@ MemorySource::MemorySource(std::vector<ByteImage> images, double fps, std::vecto
   }
 }
 
-Result<std::optional<Picture>> MemorySource::next() {
-  if (next_ == images_.size()) return std::optional<Picture>();
-  Picture picture{images_[next_], std::nullopt};
+Result<std::optional<TimedImage>> MemorySource::next() {
+  if (next_ == images_.size()) return std::optional<TimedImage>();
+  TimedImage picture{images_[next_], std::nullopt};
   if (has_times()) picture.time_ns = times_ns_[next_] - times_ns_.front();
   ++next_;
   return std::optional(std::move(picture));

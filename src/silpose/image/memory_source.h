@@ -19,7 +19,7 @@ class MemorySource : public FrameSource {
                         std::string name = "memory");
 
   [[nodiscard]] const std::string& name() const override { return name_; }
-  Result<std::optional<Picture>> next() override;
+  Result<std::optional<TimedImage>> next() override;
   Result<void> rewind() override;
   [[nodiscard]] double fps() const override { return fps_; }
   [[nodiscard]] bool has_times() const override { return !times_ns_.empty(); }

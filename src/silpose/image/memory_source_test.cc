@@ -18,7 +18,7 @@ TEST(MemorySource, GivesItsImagesOverAgain) {
   EXPECT_EQ(source.num_frames_hint(), 3);
   for (int pass = 0; pass < 2; ++pass) {
     for (const int grey : {10, 20, 30}) {
-      const std::optional<Picture> picture = source.next().value();
+      const std::optional<TimedImage> picture = source.next().value();
       EXPECT_EQ(picture.value().image.at(3, 2, 1), grey);
       EXPECT_EQ(picture->time_ns, std::nullopt);
     }

@@ -8,14 +8,14 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
-#include "silpose/base/levenberg.h"
+#include "silpose/base/levenberg_marquardt.h"
 #include "silpose/base/median.h"
 #include "silpose/base/parallel.h"
 #include "silpose/body/girth.h"
 #include "silpose/body/levels.h"
 #include "silpose/body/stretchable.h"
-#include "silpose/fit/plausibility.h"
 #include "silpose/fit/pose_fit.h"
+#include "silpose/fit/pose_prior.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/offline/clip_passes.h"
 #include "silpose/offline/girth_fit.h"
@@ -34,7 +34,7 @@ constexpr FitStage kStages[] = {{Blur::k8, 6}, {Blur::k4, 6}};
 // starts from the result of the one before. [guess]
 constexpr int kRounds = 3;
 constexpr SmallestGain kSmallestGain{.relative = 1e-3};
-constexpr double kRestWeight = 0.2;    // [guess] RestPull::weight of one instant (plausibility.h)
+constexpr double kRestWeight = 0.2;    // [guess] RestPull::weight of one instant (pose_prior.h)
 constexpr double kMaxRotation = 0.35;  // [guess] radians per step
 constexpr size_t kInstants = 16;       // [guess] of the clip, evenly spread: neighbours carry the same information
 // Errors of masks and networks are correlated between instants: all instants together count as this many independent
@@ -81,12 +81,9 @@ struct Point {
 class Problem {
  public:
   // `information` [S, S] is that of the lengths' prior.
-  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility, std::span<CoverageEvidence> evidence,
+  Problem(const CoverageLikelihood& likelihood, const PosePrior& pose_prior, std::span<CoverageEvidence> evidence,
           MatrixXd information)
-      : likelihood_(likelihood),
-        plausibility_(plausibility),
-        evidence_(evidence),
-        information_(std::move(information)) {
+      : likelihood_(likelihood), pose_prior_(pose_prior), evidence_(evidence), information_(std::move(information)) {
     const std::vector<int> shape = shape_dofs(likelihood.body().skeleton);
     lower_.resize(std::ssize(shape)), upper_.resize(std::ssize(shape));
     for (Eigen::Index s = 0; s < lower_.size(); ++s) {
@@ -127,7 +124,7 @@ class Problem {
       CoverageLikelihood::Scratch scratch(likelihood_);
       for (size_t t = begin; t < end; ++t) {
         NormalEquations equations = likelihood_.linearise(evidence_[t], blur, view(poses[t]), scratch);
-        costs[t] = equations.energy + plausibility_.add(poses[t], {kRestWeight}, equations.gradient, equations.hessian);
+        costs[t] = equations.energy + pose_prior_.add(poses[t], {kRestWeight}, equations.gradient, equations.hessian);
         out.gradient[t] = equations.gradient.head(D);
         out.hessian[t] = equations.hessian.topLeftCorner(D, D);
         out.hessian[t].diagonal().array() += 1e-6;
@@ -183,7 +180,7 @@ class Problem {
 
  private:
   const CoverageLikelihood& likelihood_;
-  const Plausibility& plausibility_;
+  const PosePrior& pose_prior_;
   std::span<CoverageEvidence> evidence_;  // [T]
   MatrixXd information_;                  // [S, S] of the lengths' prior
   VectorXd lower_, upper_;                // [S] limits of the lengths
@@ -296,17 +293,18 @@ void fit_lengths(const std::shared_ptr<const BodyModel>& stretched, const ShapeF
       evidence.push_back(likelihood.prepare(instant->observations, Blur::k8, Blur::k4, options.evidence));
     }
   }
-  const Plausibility plausibility(stretched, options.floor);
-  Problem problem(likelihood, plausibility, evidence, options.information);
+  const PosePrior pose_prior(stretched, options.floor);
+  Problem problem(likelihood, pose_prior, evidence, options.information);
   problem.estimate_noise(at.unknowns);
   for (const FitStage& stage : kStages) {
     at.equations = problem.linearise(at.unknowns, stage.blur);
-    descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) -> std::optional<Point> {
-      if (options.proceed && !options.proceed()) return std::nullopt;
-      Point next{problem.stepped(from.unknowns, from.equations, damping), {}};
-      next.equations = problem.linearise(next.unknowns, stage.blur);
-      return next;
-    });
+    levenberg_marquardt(at, stage.max_iterations, kSmallestGain,
+                        [&](const Point& from, double damping) -> std::optional<Point> {
+                          if (options.proceed && !options.proceed()) return std::nullopt;
+                          Point next{problem.stepped(from.unknowns, from.equations, damping), {}};
+                          next.equations = problem.linearise(next.unknowns, stage.blur);
+                          return next;
+                        });
   }
 }
 

@@ -70,7 +70,7 @@ size_t best_explained(const TrackerOptions& options, const JudgedClip& clip, con
   // Passes start from scratch, so a coarse mesh will do to choose.
   const auto body = level_of_detail(options.body, options_of_pass(options).lod_vertices);
   const CoverageLikelihood likelihood(body, options.cameras);
-  const Plausibility plausibility(body, options.has_floor());
+  const PosePrior pose_prior(body, options.has_floor());
   double best = -std::numeric_limits<double>::infinity();
   size_t chosen = starts.front();
   const InitialisationOptions search{.seed = options.seed, .evidence = start_evidence(options)};
@@ -80,7 +80,7 @@ size_t best_explained(const TrackerOptions& options, const JudgedClip& clip, con
     const auto& seen = clip[t].observations;
     const size_t camera = start_camera(seen);
     const StateBatch candidates = start_proposal(options, camera)->propose(seen[camera], 0, rng);
-    const auto found = initialise(likelihood, plausibility, seen, candidates, search);
+    const auto found = initialise(likelihood, pose_prior, seen, candidates, search);
     if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
   }
   return chosen;

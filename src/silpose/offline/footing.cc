@@ -18,15 +18,15 @@ double biweight(double ratio) {
 
 }  // namespace
 
-std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMotion& motion, const PointMotion& next,
-                                double dt_s) {
-  std::vector<Foothold> holds;
+std::vector<FootContact> foot_contacts(std::span<const SkinPoint> points, const PointMotion& motion,
+                                       const PointMotion& next, double dt_s) {
+  std::vector<FootContact> holds;
   for (const SkinPoint& point : points) {  // a body that reaches through the floor is elsewhere
     if (motion.position(point.joint_idx, point.x_in_joint).y() < -kHighest) return holds;
   }
   size_t first_of_bone = 0;
   double sum = 0;
-  const auto end_bone = [&] {  // the points of a bone share one foothold's weight
+  const auto end_bone = [&] {  // the points of a bone share one foot_contact's weight
     for (; first_of_bone < holds.size(); ++first_of_bone) holds[first_of_bone].weight /= std::max(1.0, sum);
     sum = 0;
   };
@@ -46,14 +46,14 @@ std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMo
   return holds;
 }
 
-FootholdEquations hold(std::span<const Foothold> holds, const PointMotion& motion, const PointMotion& next,
+FootholdEquations hold(std::span<const FootContact> holds, const PointMotion& motion, const PointMotion& next,
                        Eigen::Index num_dofs) {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(num_dofs);
   const Eigen::MatrixXd empty = Eigen::MatrixXd::Zero(num_dofs, num_dofs);
   FootholdEquations at{none, none, empty, empty, empty, 0};
   Eigen::VectorXd row(num_dofs), row_next(num_dofs);
-  for (const Foothold& foothold : holds) {
-    const SkinPoint& point = foothold.point;
+  for (const FootContact& foot_contact : holds) {
+    const SkinPoint& point = foot_contact.point;
     const Eigen::Vector3d x = motion.position(point.joint_idx, point.x_in_joint);
     const Eigen::Vector3d y = next.position(point.joint_idx, point.x_in_joint);
     for (const Eigen::Vector3d& level : {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 0, 1)}) {
@@ -62,12 +62,12 @@ FootholdEquations hold(std::span<const Foothold> holds, const PointMotion& motio
       row_next.setZero();
       motion.add_derivative(point.joint_idx, x, -level, row);
       next.add_derivative(point.joint_idx, y, level, row_next);
-      at.cost += foothold.weight * slide * slide;
-      at.gradient += foothold.weight * slide * row;
-      at.gradient_next += foothold.weight * slide * row_next;
-      at.hessian.noalias() += foothold.weight * row * row.transpose();
-      at.hessian_next.noalias() += foothold.weight * row_next * row_next.transpose();
-      at.across.noalias() += foothold.weight * row_next * row.transpose();
+      at.cost += foot_contact.weight * slide * slide;
+      at.gradient += foot_contact.weight * slide * row;
+      at.gradient_next += foot_contact.weight * slide * row_next;
+      at.hessian.noalias() += foot_contact.weight * row * row.transpose();
+      at.hessian_next.noalias() += foot_contact.weight * row_next * row_next.transpose();
+      at.across.noalias() += foot_contact.weight * row_next * row.transpose();
     }
   }
   return at;

@@ -7,20 +7,20 @@
 #include <span>
 #include <vector>
 
-#include "silpose/body/flesh.h"
+#include "silpose/body/collision_spheres.h"
 #include "silpose/body/point_motion.h"
 
 namespace silpose {
 
-struct Foothold {
+struct FootContact {
   SkinPoint point;
-  double weight = 0;  // metres^-2; those of one bone add up to no more than one foothold's
+  double weight = 0;  // metres^-2; those of one bone add up to no more than one foot_contact's
 };
 
 // Which of `points`, all that may touch the floor, rest on it from one pose to the next, `dt_s` later: none where one
 // of them is well below the floor, whose height is wrong then.
-[[nodiscard]] std::vector<Foothold> footholds(std::span<const SkinPoint> points, const PointMotion& motion,
-                                              const PointMotion& next, double dt_s);
+[[nodiscard]] std::vector<FootContact> foot_contacts(std::span<const SkinPoint> points, const PointMotion& motion,
+                                                     const PointMotion& next, double dt_s);
 
 // Half the cost's gradient [D] and Hessian [D, D] by two consecutive poses, and across: rows the next, columns the
 // first.
@@ -29,7 +29,7 @@ struct FootholdEquations {
   Eigen::MatrixXd hessian, hessian_next, across;
   double cost = 0;
 };
-[[nodiscard]] FootholdEquations hold(std::span<const Foothold> holds, const PointMotion& motion,
+[[nodiscard]] FootholdEquations hold(std::span<const FootContact> holds, const PointMotion& motion,
                                      const PointMotion& next, Eigen::Index num_dofs);
 
 }  // namespace silpose

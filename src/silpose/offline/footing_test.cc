@@ -20,24 +20,24 @@ class FootingTest : public ::testing::Test {
 };
 
 TEST_F(FootingTest, OnlyWhatIsLowAndSlowStands) {
-  const auto holds = footholds(points_, at(standing(0)), at(standing(0)), dt_s_);
+  const auto holds = foot_contacts(points_, at(standing(0)), at(standing(0)), dt_s_);
   ASSERT_EQ(holds.size(), 4u);  // the corners of the tube's end
   double sum = 0;
-  for (const Foothold& hold : holds) {
+  for (const FootContact& hold : holds) {
     EXPECT_NEAR(hold.point.x_in_joint.y(), -0.5, 1e-6);
     sum += hold.weight;
   }
   EXPECT_NEAR(sum, 30 / (0.016 * 0.016), 1);
-  EXPECT_TRUE(footholds(points_, at(standing(0, 0.1)), at(standing(0, 0.1)), dt_s_).empty());
-  EXPECT_TRUE(footholds(points_, at(standing(0)), at(standing(0.1)), dt_s_).empty());
+  EXPECT_TRUE(foot_contacts(points_, at(standing(0, 0.1)), at(standing(0, 0.1)), dt_s_).empty());
+  EXPECT_TRUE(foot_contacts(points_, at(standing(0)), at(standing(0.1)), dt_s_).empty());
 }
 
 TEST_F(FootingTest, NothingStandsOnAFloorThatTheBodyReachesThrough) {
-  EXPECT_TRUE(footholds(points_, at(standing(0, -0.5)), at(standing(0, -0.5)), dt_s_).empty());
+  EXPECT_TRUE(foot_contacts(points_, at(standing(0, -0.5)), at(standing(0, -0.5)), dt_s_).empty());
 }
 
 TEST_F(FootingTest, DerivativesAgreeWithFiniteDifferences) {
-  const auto holds = footholds(points_, at(standing(0)), at(standing(0.005)), dt_s_);
+  const auto holds = foot_contacts(points_, at(standing(0)), at(standing(0.005)), dt_s_);
   ASSERT_FALSE(holds.empty());
   const std::vector<double> pose = {0.1, 0.5, 0, 0.2, 0.3, 0.1, 0, 0}, next = {0.12, 0.51, 0.03, 0.25, 0.3, 0.2, 0, 0};
   const FootholdEquations equations = hold(holds, at(pose), at(next), 8);

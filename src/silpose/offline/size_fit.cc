@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "silpose/base/median.h"
-#include "silpose/body/flesh.h"
+#include "silpose/body/collision_spheres.h"
 #include "silpose/body/point_motion.h"
 
 namespace silpose {

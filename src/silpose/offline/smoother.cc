@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "silpose/base/check.h"
-#include "silpose/base/levenberg.h"
+#include "silpose/base/levenberg_marquardt.h"
 #include "silpose/base/parallel.h"
 #include "silpose/offline/footing.h"
 
@@ -111,10 +111,10 @@ struct Point {
 
 class Problem {
  public:
-  Problem(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
-          std::span<const ClipInstant* const> clip, const std::vector<bool>& seen, const SmootherOptions& options)
+  Problem(const CoverageLikelihood& likelihood, const PosePrior& pose_prior, std::span<const ClipInstant* const> clip,
+          const std::vector<bool>& seen, const SmootherOptions& options)
       : likelihood_(likelihood),
-        plausibility_(plausibility),
+        pose_prior_(pose_prior),
         clip_(clip),
         seen_(seen),
         options_(options),
@@ -126,11 +126,11 @@ class Problem {
   // Decides what rests on the floor, until it is called again.
   void find_footholds(const std::vector<VectorXd>& poses) {
     footholds_.assign(poses.size(), {});
-    if (plausibility_.floor_points().empty()) return;
+    if (pose_prior_.floor_points().empty()) return;
     const Skeleton& skeleton = likelihood_.body().skeleton;
     for (size_t t = 1; t < poses.size(); ++t) {
-      footholds_[t] = footholds(plausibility_.floor_points(), {skeleton, view(poses[t - 1])},
-                                {skeleton, view(poses[t])}, seconds_before(t));
+      footholds_[t] = foot_contacts(pose_prior_.floor_points(), {skeleton, view(poses[t - 1])},
+                                    {skeleton, view(poses[t])}, seconds_before(t));
     }
   }
 
@@ -176,7 +176,7 @@ class Problem {
           at.gradient[t] = std::move(equations.gradient);
           at.hessian[t] = std::move(equations.hessian);
         }
-        costs[t] += plausibility_.add(poses[t], {options_.rest_weight, directions_seen}, at.gradient[t], at.hessian[t]);
+        costs[t] += pose_prior_.add(poses[t], {options_.rest_weight, directions_seen}, at.gradient[t], at.hessian[t]);
       }
     });
     for (const double cost : costs) at.cost += cost;
@@ -245,13 +245,13 @@ class Problem {
   }
 
   const CoverageLikelihood& likelihood_;
-  const Plausibility& plausibility_;
+  const PosePrior& pose_prior_;
   std::span<const ClipInstant* const> clip_;
   const std::vector<bool>& seen_;
   const SmootherOptions& options_;
   std::vector<double> noise_;  // [C]
   std::vector<double> acceleration_;
-  std::vector<std::vector<Foothold>> footholds_;  // [T] from the frame before
+  std::vector<std::vector<FootContact>> footholds_;  // [T] from the frame before
 };
 
 void keep_whole_turns(const Skeleton& skeleton, std::vector<VectorXd>& poses) {
@@ -263,7 +263,7 @@ void keep_whole_turns(const Skeleton& skeleton, std::vector<VectorXd>& poses) {
 
 }  // namespace
 
-SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const PosePrior& pose_prior,
                            std::span<const ClipInstant* const> clip, const std::vector<bool>& seen,
                            std::vector<Eigen::VectorXd> poses, const SmootherOptions& options,
                            const std::function<bool()>& proceed) {
@@ -272,28 +272,30 @@ SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibil
   check(!options.stages.empty(), "smooth_poses: no stage");
   const Skeleton& skeleton = likelihood.body().skeleton;
   keep_whole_turns(skeleton, poses);
-  Problem problem(likelihood, plausibility, clip, seen, options);
+  Problem problem(likelihood, pose_prior, clip, seen, options);
   Point at{std::move(poses), {}};
   for (const FitStage& stage : options.stages) {
     if (&stage != &options.stages.front() && &stage == &options.stages.back()) problem.estimate_noise(at.poses);
     problem.find_footholds(at.poses);
     at.equations = problem.linearise(at.poses, stage.blur);
-    descend(at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) -> std::optional<Point> {
-      if (proceed && !proceed()) return std::nullopt;
-      BlockTridiagonal matrix = problem.normal_matrix(from.equations);
-      matrix.damp(damping);
-      matrix.factorise();
-      const std::vector<VectorXd> step = matrix.solve(from.equations.gradient);
-      Point next{from.poses, {}};
-      for (size_t t = 0; t < step.size(); ++t) {
-        for (Eigen::Index d = 0; d < step[t].size(); ++d) {
-          const double most = skeleton.dofs()[static_cast<size_t>(d)].is_translation ? kMaxTranslation : kMaxRotation;
-          next.poses[t][d] -= std::clamp(step[t][d], -most, most);
-        }
-      }
-      next.equations = problem.linearise(next.poses, stage.blur);
-      return next;
-    });
+    levenberg_marquardt(
+        at, stage.max_iterations, kSmallestGain, [&](const Point& from, double damping) -> std::optional<Point> {
+          if (proceed && !proceed()) return std::nullopt;
+          BlockTridiagonal matrix = problem.normal_matrix(from.equations);
+          matrix.damp(damping);
+          matrix.factorise();
+          const std::vector<VectorXd> step = matrix.solve(from.equations.gradient);
+          Point next{from.poses, {}};
+          for (size_t t = 0; t < step.size(); ++t) {
+            for (Eigen::Index d = 0; d < step[t].size(); ++d) {
+              const double most =
+                  skeleton.dofs()[static_cast<size_t>(d)].is_translation ? kMaxTranslation : kMaxRotation;
+              next.poses[t][d] -= std::clamp(step[t][d], -most, most);
+            }
+          }
+          next.equations = problem.linearise(next.poses, stage.blur);
+          return next;
+        });
   }
   BlockTridiagonal matrix = problem.normal_matrix(at.equations);
   matrix.factorise();

@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "silpose/fit/plausibility.h"
 #include "silpose/fit/pose_fit.h"
+#include "silpose/fit/pose_prior.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/offline/clip_instant.h"
 
@@ -20,7 +20,7 @@ namespace silpose {
 struct SmootherOptions {
   std::vector<FitStage> stages = {{Blur::k8, 4}, {Blur::k4, 4}, {Blur::k2, 4}};
   double acceleration = 1.25;  // times the profile's
-  double rest_weight = 0.05;   // plausibility.h: of one frame, of some twenty a second that say the same
+  double rest_weight = 0.05;   // pose_prior.h: of one frame, of some twenty a second that say the same
   EvidenceKind evidence = EvidenceKind::kSilhouette;
   std::vector<double> noise;  // [C] of the outlines, in units of pixel_unit^3; empty: that of exact masks. The last of
                               // several stages finds its own, from what the others left
@@ -35,7 +35,7 @@ struct SmoothedPoses {
 
 // Shapes: poses [T][D], an instant each. An instant of which `seen` [T] is false is bridged by motion alone. Whole
 // turns of periodic DOF are kept from one pose to the next. `proceed` is asked between iterations; false ends early.
-SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const Plausibility& plausibility,
+SmoothedPoses smooth_poses(const CoverageLikelihood& likelihood, const PosePrior& pose_prior,
                            std::span<const ClipInstant* const> clip, const std::vector<bool>& seen,
                            std::vector<Eigen::VectorXd> poses, const SmootherOptions& options,
                            const std::function<bool()>& proceed = {});

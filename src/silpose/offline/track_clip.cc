@@ -31,7 +31,7 @@ class ClipTracker {
     for (const ClipInstant& instant : clip) seen_.push_back(any_is_usable(instant.observations));
     const auto body = level_of_detail(options_.body, options_.lod_vertices);
     likelihood_ = std::make_unique<const CoverageLikelihood>(body, options_.cameras);
-    plausibility_ = std::make_unique<const Plausibility>(body, options_.has_floor());
+    pose_prior_ = std::make_unique<const PosePrior>(body, options_.has_floor());
   }
 
   std::vector<StepReport> run() {
@@ -94,7 +94,7 @@ class ClipTracker {
     std::vector<int64_t> times_ns;
     for (const ClipInstant* instant : evidence.instants) times_ns.push_back(instant->time_ns);
     const SmoothedPoses smoothed = smooth_poses(
-        *likelihood_, *plausibility_, evidence.instants, evidence.seen,
+        *likelihood_, *pose_prior_, evidence.instants, evidence.seen,
         best_path(options_.body->skeleton, options_.body->profile.acceleration, hypotheses, energies, times_ns),
         {.evidence = options_.evidence, .noise = evidence.noise}, [&] { return proceed(passes.share_done()); });
     if (stopped_) return false;
@@ -109,7 +109,7 @@ class ClipTracker {
   const ClipProgress& progress_;
   const ClipResume& resume_;
   std::unique_ptr<const CoverageLikelihood> likelihood_;
-  std::unique_ptr<const Plausibility> plausibility_;
+  std::unique_ptr<const PosePrior> pose_prior_;
   std::vector<bool> seen_;  // [T]
   bool stopped_ = false;
 };

@@ -18,9 +18,9 @@ std::vector<PinholeCamera> cameras_around(double height_m, int num_views) {
   std::vector<PinholeCamera> cameras;
   for (int c = 0; c < num_views; ++c) {
     const double angle = 2 * kPi * c / num_views, distance = 2.5 * height_m;
-    const Eigen::Vector3d eye(distance * std::sin(angle), (c % 2 == 0 ? 0.5 : 1.5) * height_m,
-                              distance * std::cos(angle));
-    cameras.push_back(look_at_camera(640, 480, 640, eye, {0, 0.5 * height_m, 0}));
+    const Eigen::Vector3d camera_centre(distance * std::sin(angle), (c % 2 == 0 ? 0.5 : 1.5) * height_m,
+                                        distance * std::cos(angle));
+    cameras.push_back(look_at_camera(640, 480, 640, camera_centre, {0, 0.5 * height_m, 0}));
   }
   return cameras;
 }

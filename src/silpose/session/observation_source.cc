@@ -111,7 +111,7 @@ bool ObservationSource::may_be_tracked(const Frame& frame) const {
 
 void ObservationSource::read_ahead() {
   next_ = std::make_unique<Read>();
-  Result<void> given = ahead_.give([this, to = next_.get()]() -> Result<void> {
+  Result<void> given = ahead_.submit([this, to = next_.get()]() -> Result<void> {
     Stopwatch stopwatch;
     to->frame = video_.next();
     to->decode_s = stopwatch.restart();

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "silpose/base/job_line.h"
 #include "silpose/base/progress.h"
 #include "silpose/base/result.h"
+#include "silpose/base/serial_queue.h"
 #include "silpose/image/frame.h"
 #include "silpose/image/observation.h"
 #include "silpose/segment/make_segmenter.h"
@@ -105,7 +105,7 @@ class ObservationSource {
   double learning_s_ = 0;
   int64_t start_ns_ = 0, end_ns_ = 0;  // of the stretch that the options choose
   std::unique_ptr<Read> next_;         // read ahead, where a job of `ahead_` was given
-  mutable JobLine ahead_;              // last: its jobs use the rest
+  mutable SerialQueue ahead_;          // last: its jobs use the rest
 };
 
 }  // namespace silpose

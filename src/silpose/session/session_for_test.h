@@ -57,10 +57,10 @@ class TubeSource : public FrameSource {
       : options_(options), camera_(tube_camera(options.camera)), counts_(std::move(counts)) {}
 
   [[nodiscard]] const std::string& name() const override { return name_; }
-  Result<std::optional<Picture>> next() override {
+  Result<std::optional<TimedImage>> next() override {
     if (next_ == 0) ++counts_->opened;
     if (next_ == options_.fails_at) return error("{}: frame {} is damaged", name_, next_);
-    if (next_ == options_.num_frames) return std::optional<Picture>();
+    if (next_ == options_.num_frames) return std::optional<TimedImage>();
     ++counts_->images;
     const Mask mask = render_silhouette(body_, camera_, tube_pose(next_++));
     ByteImage image(mask.width(), mask.height(), 3, 0);
@@ -69,7 +69,7 @@ class TubeSource : public FrameSource {
         for (int c = 0; c < 3; ++c) image.at(x, y, c) = mask.get(x, y) ? 255 : 0;
       }
     }
-    return std::optional(Picture{.image = std::move(image), .time_ns = {}});
+    return std::optional(TimedImage{.image = std::move(image), .time_ns = {}});
   }
   Result<void> rewind() override {
     next_ = 0;

@@ -7,7 +7,7 @@ namespace silpose {
 
 template <class Call>
 Result<void> SinkQueue::give(Call call) {
-  return calls_.give([this, call = std::move(call)]() -> Result<void> {
+  return calls_.submit([this, call = std::move(call)]() -> Result<void> {
     for (const auto& sink : sinks_) {
       if (Result<void> done = call(*sink); !done) return done;
     }

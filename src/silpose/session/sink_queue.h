@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "silpose/base/job_line.h"
 #include "silpose/base/result.h"
+#include "silpose/base/serial_queue.h"
 #include "silpose/image/frame.h"
 #include "silpose/image/observation.h"
 #include "silpose/session/sink.h"
@@ -37,7 +37,7 @@ class SinkQueue {
   Result<void> give(Call call);
 
   std::vector<std::shared_ptr<SessionSink>> sinks_;
-  JobLine calls_;  // last: its jobs use the rest
+  SerialQueue calls_;  // last: its jobs use the rest
 };
 
 }  // namespace silpose

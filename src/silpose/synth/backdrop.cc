@@ -97,7 +97,7 @@ Result<Backdrop> parse_backdrop(const std::string& text) {
 ByteImage draw_backdrop(const PinholeCamera& camera, Backdrop backdrop, double wall_distance_m, uint64_t seed) {
   check(wall_distance_m > 0, "draw_backdrop: wall {} m away", wall_distance_m);
   const std::vector<Poster> posters = hang_posters(seed);
-  const Vector3d eye = camera.centre_in_world();
+  const Vector3d camera_centre = camera.centre_in_world();
   const Eigen::Matrix3d world_from_cam = camera.cam_from_world.rotation.transpose();
   Vector3d ahead = world_from_cam * Vector3d::UnitZ();
   ahead.y() = 0;
@@ -111,10 +111,10 @@ ByteImage draw_backdrop(const PinholeCamera& camera, Backdrop backdrop, double w
       for (int column = 0; column < camera.width; ++column) {
         const Vector3d ray = world_from_cam * camera.ray_from_pixel({column + 0.5, static_cast<double>(row) + 0.5});
         const double to_wall = ray.dot(ahead) > 1e-6 ? wall_distance_m / ray.dot(ahead) : 1e6;
-        const double to_floor = ray.y() < -1e-6 && eye.y() > 0 ? -eye.y() / ray.y() : 1e6;
+        const double to_floor = ray.y() < -1e-6 && camera_centre.y() > 0 ? -camera_centre.y() / ray.y() : 1e6;
         const bool is_floor = to_floor < to_wall;
-        const Vector3d x = eye + std::min(to_wall, to_floor) * ray;
-        const double along = (x - eye).dot(right);
+        const Vector3d x = camera_centre + std::min(to_wall, to_floor) * ray;
+        const double along = (x - camera_centre).dot(right);
         Vector3d colour;
         if (backdrop == Backdrop::kGreen) {
           colour = is_floor ? green_colour(x.x(), x.z(), true, seed) : green_colour(along, x.y(), false, seed);

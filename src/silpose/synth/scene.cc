@@ -91,8 +91,9 @@ Result<SyntheticSequence> make_sequence(std::shared_ptr<const BodyModel> body, c
     bool all_inside = true;
     for (const View& view : options.views) {
       const double azimuth = to_radians(view.azimuth_deg);
-      const Eigen::Vector3d eye = middle + distance * Eigen::Vector3d(std::sin(azimuth), 0, std::cos(azimuth));
-      PinholeCamera camera = look_at_camera(options.width, options.height, options.focal_px, eye, middle);
+      const Eigen::Vector3d camera_centre =
+          middle + distance * Eigen::Vector3d(std::sin(azimuth), 0, std::cos(azimuth));
+      PinholeCamera camera = look_at_camera(options.width, options.height, options.focal_px, camera_centre, middle);
       camera.name = view.name;
       for (const auto& frame : vertices) all_inside = all_inside && is_inside(camera, frame);
       sequence.cameras.push_back(std::move(camera));

@@ -32,9 +32,9 @@ std::vector<Eigen::VectorXd> poses_of(std::span<const StartingPose> starts) {
 
 FittedFilter::FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
                            const std::shared_ptr<const CoverageLikelihood>& coarse,
-                           std::shared_ptr<const Plausibility> plausibility)
+                           std::shared_ptr<const PosePrior> pose_prior)
     : fine_(fine),
-      mixture_(std::move(fine), coarse, std::move(plausibility), mixture_options(options)),
+      mixture_(std::move(fine), coarse, std::move(pose_prior), mixture_options(options)),
       body_error_(coarse->body(), options.cameras, options.size_deviation),
       evidence_(options.evidence) {}
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "silpose/fit/body_error.h"
-#include "silpose/fit/plausibility.h"
+#include "silpose/fit/pose_prior.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/track/mixture_filter.h"
 #include "silpose/track/pose_filter.h"
@@ -20,8 +20,7 @@ class FittedFilter final : public PoseFilter {
  public:
   // REQUIRES: options.fitted().
   FittedFilter(const TrackerOptions& options, std::shared_ptr<const CoverageLikelihood> fine,
-               const std::shared_ptr<const CoverageLikelihood>& coarse,
-               std::shared_ptr<const Plausibility> plausibility);
+               const std::shared_ptr<const CoverageLikelihood>& coarse, std::shared_ptr<const PosePrior> pose_prior);
 
   void start(std::span<const StartingPose> starts) override;
   void add(std::span<const StartingPose> starts) override;

@@ -223,7 +223,7 @@ class TwoFilters final : public PoseFilter {
 std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const Likelihoods& likelihoods) {
   options.check();
   if (options.fitted() != nullptr) {
-    return std::make_unique<FittedFilter>(options, likelihoods.fine, likelihoods.coarse, likelihoods.plausibility);
+    return std::make_unique<FittedFilter>(options, likelihoods.fine, likelihoods.coarse, likelihoods.pose_prior);
   }
   if (options.sampling()->separate_root) return std::make_unique<TwoFilters>(options, likelihoods.renderers);
   return std::make_unique<JointFilter>(options, likelihoods.renderers);

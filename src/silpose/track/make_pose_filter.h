@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "silpose/fit/plausibility.h"
+#include "silpose/fit/pose_prior.h"
 #include "silpose/likelihood/coverage_likelihood.h"
 #include "silpose/render/silhouette.h"
 #include "silpose/track/pose_filter.h"
@@ -19,7 +19,7 @@ namespace silpose {
 struct Likelihoods {
   std::vector<std::shared_ptr<const BatchRenderer>> renderers;
   std::shared_ptr<const CoverageLikelihood> fine, coarse;
-  std::shared_ptr<const Plausibility> plausibility;
+  std::shared_ptr<const PosePrior> pose_prior;
 };
 
 // The filter of `options`. It shares the body and the likelihoods and copies what else it needs:

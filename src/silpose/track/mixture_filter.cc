@@ -42,9 +42,9 @@ struct MixtureFilter::Child {
 
 MixtureFilter::MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine,
                              std::shared_ptr<const CoverageLikelihood> coarse,
-                             std::shared_ptr<const Plausibility> plausibility, const MixtureOptions& options)
-    : fine_(std::move(fine)), coarse_(std::move(coarse)), plausibility_(std::move(plausibility)), options_(options) {
-  check(fine_ && coarse_ && plausibility_, "MixtureFilter: no likelihood, or no plausibility");
+                             std::shared_ptr<const PosePrior> pose_prior, const MixtureOptions& options)
+    : fine_(std::move(fine)), coarse_(std::move(coarse)), pose_prior_(std::move(pose_prior)), options_(options) {
+  check(fine_ && coarse_ && pose_prior_, "MixtureFilter: no likelihood, or no pose_prior");
   check(options.num_hypotheses >= 1, "MixtureFilter: {} hypotheses", options.num_hypotheses);
   limbs_ = fine_->body().profile.limbs;
   acceleration_ = fine_->body().profile.acceleration;
@@ -91,7 +91,7 @@ void MixtureFilter::step(const CoverageEvidence& evidence, double dt_s) {
       CoverageLikelihood::Scratch scratch(*fine_);
       for (size_t i = begin; i < end; ++i) {
         some[i].fit =
-            fit_pose(*fine_, *plausibility_, evidence, some[i].prior, some[i].start, stages, fit_options, scratch);
+            fit_pose(*fine_, *pose_prior_, evidence, some[i].prior, some[i].start, stages, fit_options, scratch);
       }
     });
   };
@@ -138,13 +138,13 @@ std::vector<MixtureFilter::Child> MixtureFilter::jumps_from(const CoverageEviden
                            [&](size_t i) { return fitted[i].log_weight - 0.5 * fitted[i].fit.cost(); });
   order.resize(std::min(order.size(), static_cast<size_t>(options_.num_parents)));
 
-  const Eigen::Vector3d eye = fine_->cameras()[evidence.first_seen().value_or(0)].centre_in_world();
+  const Eigen::Vector3d camera_centre = fine_->cameras()[evidence.first_seen().value_or(0)].centre_in_world();
   std::vector<std::vector<LimbVariant>> variants(order.size());
   parallel_for(order.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       Rng rng(options_.seed, steps_, order[i]);
-      variants[i] =
-          promising_limbs(*coarse_, evidence, limbs_, view(fitted[order[i]].fit.pose), eye, options_.limbs, rng);
+      variants[i] = rank_limb_variants(*coarse_, evidence, limbs_, view(fitted[order[i]].fit.pose), camera_centre,
+                                       options_.limbs, rng);
     }
   });
   std::vector<Child> jumps;

@@ -24,7 +24,7 @@ struct MixtureOptions {
   int num_parents = 2;           // of new hypotheses, the best
   LimbSearchOptions limbs;       // of new hypotheses, for each parent
   double acceleration = 1.25;    // times the profile's
-  double rest_weight = 1;        // plausibility.h: holds what a silhouette does not show
+  double rest_weight = 1;        // pose_prior.h: holds what a silhouette does not show
   double jump_log_prior = -6;    // log-probability of a hypothesis that jumped
   double merge_distance = 0.05;  // metres: hypotheses with all joints nearer than this are merged
   uint64_t seed = 1;
@@ -34,7 +34,7 @@ class MixtureFilter {
  public:
   // `fine` is fitted, `coarse` ranks candidates: two meshes of the same body in front of the same cameras.
   MixtureFilter(std::shared_ptr<const CoverageLikelihood> fine, std::shared_ptr<const CoverageLikelihood> coarse,
-                std::shared_ptr<const Plausibility> plausibility, const MixtureOptions& options);
+                std::shared_ptr<const PosePrior> pose_prior, const MixtureOptions& options);
 
   // Starts over at poses [K][D], equally likely: the first step weighs them.
   void start(const std::vector<Eigen::VectorXd>& poses);
@@ -66,7 +66,7 @@ class MixtureFilter {
   void keep_best(std::vector<Child> children);
 
   std::shared_ptr<const CoverageLikelihood> fine_, coarse_;
-  std::shared_ptr<const Plausibility> plausibility_;
+  std::shared_ptr<const PosePrior> pose_prior_;
   MixtureOptions options_;
   std::vector<Limb> limbs_;
   std::vector<double> acceleration_;  // [D]

@@ -63,7 +63,7 @@ struct Tracker::Impl {
     options.check();
     const auto fine = level_of_detail(options.body, options.lod_vertices);
     likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
-    likelihoods.plausibility = std::make_shared<const Plausibility>(fine, options.has_floor());
+    likelihoods.pose_prior = std::make_shared<const PosePrior>(fine, options.has_floor());
     const auto coarse = level_of_detail(options.body, kRankingLevel);
     for (const PinholeCamera& camera : options.cameras) {
       seen_by.emplace_back(options.body, camera);
@@ -102,7 +102,7 @@ struct Tracker::Impl {
       search.share_fitted_finely = kReinitialiseShare;
       search.first_heading = kReinitialiseHeadings * num_reinitialisations;
     }
-    return initialise(*likelihoods.fine, *likelihoods.plausibility, observations, candidates, search);
+    return initialise(*likelihoods.fine, *likelihoods.pose_prior, observations, candidates, search);
   }
 
   // Whether any camera shows something to track by, of the kind of evidence that is used.

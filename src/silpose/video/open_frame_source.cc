@@ -36,14 +36,14 @@ class LiveCamera : public FrameSource {
   }
   [[nodiscard]] bool is_live() const override { return true; }
 
-  Result<std::optional<Picture>> next() override {
+  Result<std::optional<TimedImage>> next() override {
     try {
       cv::Mat view;
-      if (!capture_.read(view) || view.empty()) return std::optional<Picture>();
+      if (!capture_.read(view) || view.empty()) return std::optional<TimedImage>();
       if (view.type() != CV_8UC3) return error("{}: frames are not 8-bit colour", name_);
       ByteImage image(view.cols, view.rows, 3);
       view.copyTo(cv::Mat(view.size(), CV_8UC3, image.pixels().data()));
-      return std::optional(Picture{std::move(image), std::nullopt});
+      return std::optional(TimedImage{std::move(image), std::nullopt});
     } catch (const cv::Exception& exception) {
       return error("{}: cannot be decoded ({})", name_, exception.err);
     }
@@ -67,11 +67,11 @@ class PictureSource : public FrameSource {
   [[nodiscard]] std::span<const int64_t> numbers() const override { return numbers_; }
   [[nodiscard]] int64_t num_frames_hint() const override { return static_cast<int64_t>(paths_.size()); }
   [[nodiscard]] std::optional<double> focal_mm35() const override { return focal_mm35_; }
-  Result<std::optional<Picture>> next() override {
-    if (next_ == paths_.size()) return std::optional<Picture>();
+  Result<std::optional<TimedImage>> next() override {
+    if (next_ == paths_.size()) return std::optional<TimedImage>();
     Result<ByteImage> image = read_colour_image(paths_[next_++]);
     if (!image) return image.failure();
-    return std::optional(Picture{std::move(*image), std::nullopt});
+    return std::optional(TimedImage{std::move(*image), std::nullopt});
   }
   Result<void> rewind() override {
     next_ = 0;

@@ -16,7 +16,7 @@ struct Video::Impl {
   // those of this camera alone.
   struct Camera {
     std::unique_ptr<FrameSource> source;
-    std::optional<Picture> picture;
+    std::optional<TimedImage> picture;
     int width = 0, height = 0;
     double fps = 0;  // 0: unknown. These two as they were after the first picture: a rewound source may forget them.
     int64_t hint = 0;
@@ -24,7 +24,7 @@ struct Video::Impl {
 
     // Reads the next picture. False: there is none.
     Result<bool> read() {
-      Result<std::optional<Picture>> next = source->next();
+      Result<std::optional<TimedImage>> next = source->next();
       if (!next) return next.failure();
       picture = std::move(*next);
       if (!picture) return false;

@@ -75,7 +75,7 @@ class VideoFile : public FrameSource {
     return all;
   }
 
-  Result<std::optional<Picture>> next() override {
+  Result<std::optional<TimedImage>> next() override {
     constexpr int kMostFailures = 1000;  // of a decoder that keeps failing without consuming input
     for (int failures = 0; failures < kMostFailures;) {
       const int code = avcodec_receive_frame(decoder_.get(), decoded_.get());
@@ -89,7 +89,7 @@ class VideoFile : public FrameSource {
       }
     }
     broke_off_ = broke_off_ || last_is_partial_ || ends_early();
-    return std::optional<Picture>();
+    return std::optional<TimedImage>();
   }
 
  private:
@@ -182,7 +182,7 @@ class VideoFile : public FrameSource {
     }
   }
 
-  Result<std::optional<Picture>> picture() {
+  Result<std::optional<TimedImage>> picture() {
     const AVFrame& frame = *decoded_;
     if (num_given_ == 0) look_at_first(frame);
     const bool has_fields = is_interlaced(frame);
@@ -194,9 +194,9 @@ class VideoFile : public FrameSource {
     if (!converted) return error("{}: {}", name_, converted.error().message);
     cv::Mat& stored = *converted;
     if (has_fields && stored.rows > 1) keep_one_field(stored, is_top_field_first(frame));
-    Picture shown{.image = shown_picture(stored, pixel_aspect_, turn_), .time_ns = time_of(frame)};
+    TimedImage shown{.image = shown_picture(stored, pixel_aspect_, turn_), .time_ns = time_of(frame)};
     ++num_given_;
-    return std::optional<Picture>(std::move(shown));
+    return std::optional<TimedImage>(std::move(shown));
   }
 
   void look_at_first(const AVFrame& frame) {

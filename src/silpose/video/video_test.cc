@@ -384,7 +384,7 @@ TEST(JoinedSources, RewoundAfterTheFirstFrame) {
 class BadSource : public MemorySource {
  public:
   explicit BadSource(bool few_numbers) : MemorySource({ByteImage(4, 3, 3), ByteImage(4, 3, 3)}), few_(few_numbers) {}
-  Result<std::optional<Picture>> next() override {
+  Result<std::optional<TimedImage>> next() override {
     auto picture = MemorySource::next();
     if (!few_ && picture && picture->has_value()) (*picture)->image = ByteImage(4, 3, 1);
     return picture;

@@ -1,4 +1,4 @@
-#include "silpose/base/levenberg.h"
+#include "silpose/base/levenberg_marquardt.h"
 
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ Root gauss_newton(const Root& at, double damping) {
 
 TEST(Descend, FindsTheMinimum) {
   Root at{0.3};  // the first whole step overshoots to 3.5
-  descend(at, 40, {.absolute = 1e-20},
-          [](const Root& from, double damping) { return std::optional(gauss_newton(from, damping)); });
+  levenberg_marquardt(at, 40, {.absolute = 1e-20},
+                      [](const Root& from, double damping) { return std::optional(gauss_newton(from, damping)); });
   EXPECT_NEAR(at.x, std::sqrt(2.0), 1e-9);
 }
 
@@ -29,7 +29,7 @@ TEST(Descend, NeverGoesUpAndDampsMoreUntilItNeedNot) {
   Root at{0.3};
   std::vector<double> tried;
   double last = at.cost();
-  descend(at, 6, {}, [&](const Root& from, double damping) {
+  levenberg_marquardt(at, 6, {}, [&](const Root& from, double damping) {
     EXPECT_LE(from.cost(), last);
     last = from.cost();
     tried.push_back(damping);
@@ -47,13 +47,13 @@ TEST(Descend, EndsWhereTheGainIsSmallOrTheStepIsNone) {
     ++steps;
     return std::optional(gauss_newton(from, damping));
   };
-  descend(at, 40, {.absolute = 1e-3}, count);
+  levenberg_marquardt(at, 40, {.absolute = 1e-3}, count);
   EXPECT_EQ(steps, 1);
   at.x = 1.4;
-  descend(at, 40, {.relative = 1e9}, count);
+  levenberg_marquardt(at, 40, {.relative = 1e9}, count);
   EXPECT_EQ(steps, 2);
   at.x = 1.3;
-  descend(at, 40, {}, [](const Root&, double) { return std::optional<Root>(); });
+  levenberg_marquardt(at, 40, {}, [](const Root&, double) { return std::optional<Root>(); });
   EXPECT_EQ(at.x, 1.3);
 }
 

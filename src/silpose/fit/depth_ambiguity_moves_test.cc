@@ -1,4 +1,4 @@
-#include "silpose/fit/picture_moves.h"
+#include "silpose/fit/depth_ambiguity_moves.h"
 
 #include <gtest/gtest.h>
 
@@ -52,7 +52,7 @@ TEST(ExchangedInPicture, HandsAreSeenWhereTheOtherWas) {
     std::map<std::string, double> mean;
     for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
       Rng rng(seed);
-      const auto exchanged = exchanged_in_picture(human(), limbs[a], limbs[b], pose, kEye, rng);
+      const auto exchanged = exchanged_in_image(human(), limbs[a], limbs[b], pose, kEye, rng);
       ASSERT_EQ(exchanged.size(), pose.size());
       for (const auto& [hand, other] : {std::pair{"right_hand", "left_hand"}, std::pair{"left_hand", "right_hand"}}) {
         EXPECT_GT(seen_apart(place_of(hand, pose), place_of(other, pose)), 0.4);
@@ -72,7 +72,7 @@ TEST(ExchangedInPicture, HandsAreSeenWhereTheOtherWas) {
 
 TEST(TurnedInPicture, HandsAndFeetStayWhereTheyAreSeen) {
   const std::vector<double> pose = reaching_pose();
-  const auto turned = turned_in_picture(human(), pose, to_radians(40), kEye);
+  const auto turned = turned_in_image(human(), pose, to_radians(40), kEye);
   ASSERT_EQ(turned.size(), pose.size());
   const auto turn = static_cast<size_t>(*human().profile.heading);
   EXPECT_NEAR(wrap_angle(turned[turn] - pose[turn]), to_radians(40), 1e-9);
@@ -83,7 +83,7 @@ TEST(TurnedInPicture, HandsAndFeetStayWhereTheyAreSeen) {
 
 TEST(PictureMoves, StayWithinLimitsAndABodyWithoutPairsIsOnlyTurned) {
   Rng rng(1);
-  const auto moves = picture_moves(human(), reaching_pose(), kEye, rng);
+  const auto moves = depth_ambiguity_moves(human(), reaching_pose(), kEye, rng);
   EXPECT_EQ(moves.size(), 6u);  // legs, arms, both; turned either way; mirrored
   for (const auto& move : moves) {
     auto clamped = move;
@@ -91,7 +91,7 @@ TEST(PictureMoves, StayWithinLimitsAndABodyWithoutPairsIsOnlyTurned) {
     for (size_t d = 0; d < move.size(); ++d) EXPECT_NEAR(move[d], clamped[d], 1e-9) << human().skeleton.dofs()[d].name;
   }
   const BodyModel tube = make_test_body();
-  EXPECT_EQ(picture_moves(tube, std::vector<double>(8, 0.0), kEye, rng).size(), 3u);
+  EXPECT_EQ(depth_ambiguity_moves(tube, std::vector<double>(8, 0.0), kEye, rng).size(), 3u);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Plausibility: what is known of a pose before any picture: joints stay within their limits and near rest, the body
+// PosePrior: what is known of a pose before any picture: joints stay within their limits and near rest, the body
 // does not pass through itself, and nothing of it lies just below the floor y = 0 (where any point lies deep below, the
 // floor is assumed to be elsewhere, and nothing is pushed). Derived from mesh and skeleton of any body.
 // All of it is soft: least squares, as the fit of the silhouette uses. Threads: constant after construction.
@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "silpose/body/flesh.h"
+#include "silpose/body/collision_spheres.h"
 #include "silpose/body/point_motion.h"
 
 namespace silpose {
@@ -20,9 +20,9 @@ struct RestPull {
   bool directions_seen = false;  // of limbs, by keypoints: what is measured is constrained less
 };
 
-class Plausibility {
+class PosePrior {
  public:
-  Plausibility(std::shared_ptr<const BodyModel> body, bool floor);
+  PosePrior(std::shared_ptr<const BodyModel> body, bool floor);
 
   // Cost of a pose [D]; adds to `gradient` [D] and `hessian` [D, D] of half of it.
   double add(const Eigen::VectorXd& pose, const RestPull& rest, Eigen::VectorXd& gradient,
@@ -47,8 +47,8 @@ class Plausibility {
   double add_floor(const PointMotion& motion, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
 
   std::shared_ptr<const BodyModel> body_;
-  std::vector<FleshSphere> spheres_;
-  std::vector<FleshSphere> bounds_;  // [J] a sphere about all spheres of a bone
+  std::vector<CollisionSphere> spheres_;
+  std::vector<CollisionSphere> bounds_;  // [J] a sphere about all spheres of a bone
   std::vector<BonePair> pairs_;
   std::vector<SkinPoint> points_;  // none without a floor
 };

@@ -1,4 +1,4 @@
-// JobLine: a thread that does one job after another while the thread that submits them continues, such as writing a
+// SerialQueue: a thread that does one job after another while the thread that submits them continues, such as writing a
 // frame's files while the next frame is computed. Jobs are done in the order they were given.
 // Threads: one thread gives jobs; what a job uses must not be used elsewhere until finish().
 #pragma once
@@ -16,20 +16,20 @@
 
 namespace silpose {
 
-class JobLine {
+class SerialQueue {
  public:
   using Job = std::function<Result<void>()>;
 
-  // `most_waiting`: jobs submitted and not begun, before give() blocks: it bounds the memory that they hold.
-  explicit JobLine(size_t most_waiting = 4);
-  JobLine(const JobLine&) = delete;
-  JobLine& operator=(const JobLine&) = delete;
-  ~JobLine();  // completes the jobs that were submitted
+  // `most_waiting`: jobs submitted and not begun, before submit() blocks: it bounds the memory that they hold.
+  explicit SerialQueue(size_t most_waiting = 4);
+  SerialQueue(const SerialQueue&) = delete;
+  SerialQueue& operator=(const SerialQueue&) = delete;
+  ~SerialQueue();  // completes the jobs that were submitted
 
   // Errors: what an earlier job failed with, reported once; no job is run after it. What a job throws is thrown here.
-  Result<void> give(Job job);
+  Result<void> submit(Job job);
 
-  // Waits until all jobs are done. Errors: as give().
+  // Waits until all jobs are done. Errors: as submit().
   Result<void> finish();
 
   // How long jobs took since the last call of this. REQUIRES: finish() was called.

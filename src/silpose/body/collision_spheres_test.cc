@@ -1,4 +1,4 @@
-#include "silpose/body/flesh.h"
+#include "silpose/body/collision_spheres.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@ namespace silpose {
 namespace {
 
 TEST(Flesh, ABallIsOneSphere) {
-  const std::vector<FleshSphere> spheres = flesh_spheres(make_ball_body());
+  const std::vector<CollisionSphere> spheres = collision_spheres(make_ball_body());
   ASSERT_EQ(spheres.size(), 2u);
   for (int j = 0; j < 2; ++j) {
-    const FleshSphere& sphere = spheres[static_cast<size_t>(j)];
+    const CollisionSphere& sphere = spheres[static_cast<size_t>(j)];
     EXPECT_EQ(sphere.joint_idx, j);
     EXPECT_NEAR(sphere.radius, 0.2, 0.002);
     EXPECT_LT(sphere.centre_in_joint.norm(), 0.002);
@@ -24,7 +24,7 @@ TEST(Flesh, ABallIsOneSphere) {
 TEST(Flesh, SpheresHoldNoVertexAndEveryBoneHasOne) {
   const BodyModel body = make_test_body();
   std::vector<int> count(body.skeleton.joints().size(), 0);
-  for (const FleshSphere& sphere : flesh_spheres(body)) {
+  for (const CollisionSphere& sphere : collision_spheres(body)) {
     const auto j = static_cast<size_t>(sphere.joint_idx);
     ++count[j];
     const Eigen::Vector3d centre = body.joint_from_rest[j].inverse() * sphere.centre_in_joint;
@@ -36,7 +36,7 @@ TEST(Flesh, SpheresHoldNoVertexAndEveryBoneHasOne) {
 }
 
 TEST(Flesh, CentresOfTwoBallsAreTheirJoints) {
-  const auto centres = flesh_centres(make_ball_body());
+  const auto centres = segment_centres(make_ball_body());
   ASSERT_EQ(centres.size(), 2u);
   for (const auto& centre : centres) EXPECT_LT(centre.value().norm(), 0.005);
 }
@@ -45,7 +45,7 @@ TEST(Flesh, CentresOfTwoBallsAreTheirJoints) {
 TEST(Flesh, CentresOfATubeLieInTheMiddleOfItsBones) {
   const BodyModel body = make_test_body();
   const PointMotion motion(body.skeleton, standing_pose(body));
-  const auto centres = flesh_centres(body);
+  const auto centres = segment_centres(body);
   const double heights[] = {0.375, 0.95, 1.325};
   for (int j = 0; j < 3; ++j) {
     const Eigen::Vector3d x = motion.position(j, centres[static_cast<size_t>(j)].value());

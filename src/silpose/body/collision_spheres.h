@@ -12,18 +12,18 @@
 
 namespace silpose {
 
-struct FleshSphere {
+struct CollisionSphere {
   int joint_idx = 0;
   Eigen::Vector3d centre_in_joint;
   double radius = 0;  // metres; no vertex of the rest mesh lies inside
 };
 
 // Ordered by joint, then by size; a few per bone. Bones without vertices have none.
-[[nodiscard]] std::vector<FleshSphere> flesh_spheres(const BodyModel& body);
+[[nodiscard]] std::vector<CollisionSphere> collision_spheres(const BodyModel& body);
 
 // [J] The middle of each bone's flesh (of the volume, in the rest pose), in its joint's frame; nothing where a bone has
 // none. From columns of the closed mesh, each halved between the bones it enters and leaves at.
-[[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> flesh_centres(const BodyModel& body);
+[[nodiscard]] std::vector<std::optional<Eigen::Vector3d>> segment_centres(const BodyModel& body);
 
 struct SkinPoint {
   int joint_idx = 0;

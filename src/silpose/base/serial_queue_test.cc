@@ -1,4 +1,4 @@
-#include "silpose/base/job_line.h"
+#include "silpose/base/serial_queue.h"
 
 #include <gtest/gtest.h>
 
@@ -11,13 +11,13 @@
 namespace silpose {
 namespace {
 
-TEST(JobLine, DoesJobsInOrderBesideTheGiver) {
+TEST(SerialQueue, DoesJobsInOrderBesideTheGiver) {
   std::vector<int> done;
   const auto giver = std::this_thread::get_id();
   std::thread::id doer = giver;
-  JobLine line(2);
+  SerialQueue line(2);
   for (int i = 0; i < 20; ++i) {
-    ASSERT_TRUE(line.give([&, i]() -> Result<void> {
+    ASSERT_TRUE(line.submit([&, i]() -> Result<void> {
       done.push_back(i);
       doer = std::this_thread::get_id();
       return {};
@@ -29,11 +29,11 @@ TEST(JobLine, DoesJobsInOrderBesideTheGiver) {
   EXPECT_NE(doer, giver);
 }
 
-TEST(JobLine, GivingWaitsWhereTooManyWait) {
-  JobLine line(1);
+TEST(SerialQueue, GivingWaitsWhereTooManyWait) {
+  SerialQueue line(1);
   std::atomic<int> num_done = 0;
   for (int i = 0; i < 4; ++i) {
-    ASSERT_TRUE(line.give([&]() -> Result<void> {
+    ASSERT_TRUE(line.submit([&]() -> Result<void> {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
       ++num_done;
       return {};
@@ -46,14 +46,14 @@ TEST(JobLine, GivingWaitsWhereTooManyWait) {
   EXPECT_EQ(line.take_seconds(), 0);
 }
 
-TEST(JobLine, ReportsAFailureOnceAndDoesNothingAfterIt) {
-  JobLine line;
+TEST(SerialQueue, ReportsAFailureOnceAndDoesNothingAfterIt) {
+  SerialQueue line;
   int num_done = 0;
-  ASSERT_TRUE(line.give([]() -> Result<void> { return error("disk: full"); }));
+  ASSERT_TRUE(line.submit([]() -> Result<void> { return error("disk: full"); }));
   const Result<void> finished = line.finish();
   ASSERT_FALSE(finished);
   EXPECT_EQ(finished.error().message, "disk: full");
-  EXPECT_TRUE(line.give([&]() -> Result<void> {
+  EXPECT_TRUE(line.submit([&]() -> Result<void> {
     ++num_done;
     return {};
   }));
@@ -61,27 +61,27 @@ TEST(JobLine, ReportsAFailureOnceAndDoesNothingAfterIt) {
   EXPECT_EQ(num_done, 0);
 }
 
-TEST(JobLine, AFailureEndsTheWaitingOfWhoGivesMore) {
-  JobLine line(1);
+TEST(SerialQueue, AFailureEndsTheWaitingOfWhoGivesMore) {
+  SerialQueue line(1);
   Result<void> given;
   for (int i = 0; i < 100 && given.ok(); ++i) {
-    given = line.give([]() -> Result<void> { return error("no"); });
+    given = line.submit([]() -> Result<void> { return error("no"); });
   }
   EXPECT_FALSE(given);
 }
 
-TEST(JobLine, ThrowsWhatAJobThrew) {
-  JobLine line;
-  ASSERT_TRUE(line.give([]() -> Result<void> { throw std::runtime_error("unforeseen"); }));
+TEST(SerialQueue, ThrowsWhatAJobThrew) {
+  SerialQueue line;
+  ASSERT_TRUE(line.submit([]() -> Result<void> { throw std::runtime_error("unforeseen"); }));
   EXPECT_THROW((void)line.finish(), std::runtime_error);
 }
 
-TEST(JobLine, DoesWhatWasGivenBeforeItEnds) {
+TEST(SerialQueue, DoesWhatWasGivenBeforeItEnds) {
   int num_done = 0;
   {
-    JobLine line;
+    SerialQueue line;
     for (int i = 0; i < 3; ++i) {
-      ASSERT_TRUE(line.give([&]() -> Result<void> {
+      ASSERT_TRUE(line.submit([&]() -> Result<void> {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
         ++num_done;
         return {};

@@ -1,4 +1,4 @@
-#include "silpose/fit/plausibility.h"
+#include "silpose/fit/pose_prior.h"
 
 #include <algorithm>
 #include <cmath>
@@ -63,11 +63,11 @@ double add_residual(double residual, double weight, const VectorXd& row, VectorX
 }
 
 // From centre to centre by way of the joints between them.
-double distance_along_bones(const Skeleton& skeleton, const FleshSphere& a, const FleshSphere& b) {
-  FleshSphere ends[] = {a, b};
+double distance_along_bones(const Skeleton& skeleton, const CollisionSphere& a, const CollisionSphere& b) {
+  CollisionSphere ends[] = {a, b};
   double length = 0;
   while (ends[0].joint_idx != ends[1].joint_idx) {  // the one further down the tree goes up by a joint
-    FleshSphere& end = ends[0].joint_idx > ends[1].joint_idx ? ends[0] : ends[1];
+    CollisionSphere& end = ends[0].joint_idx > ends[1].joint_idx ? ends[0] : ends[1];
     const Joint& joint = skeleton.joints()[static_cast<size_t>(end.joint_idx)];
     length += end.centre_in_joint.norm();
     end = {joint.parent_idx, joint.offset_in_parent, 0};
@@ -76,15 +76,15 @@ double distance_along_bones(const Skeleton& skeleton, const FleshSphere& a, cons
 }
 
 // [J] about all spheres of each bone.
-std::vector<FleshSphere> bounds_of(size_t num_joints, const std::vector<FleshSphere>& spheres) {
-  std::vector<FleshSphere> bounds(num_joints, {0, Vector3d::Zero(), 0});
+std::vector<CollisionSphere> bounds_of(size_t num_joints, const std::vector<CollisionSphere>& spheres) {
+  std::vector<CollisionSphere> bounds(num_joints, {0, Vector3d::Zero(), 0});
   std::vector<double> count(num_joints, 0);
-  for (const FleshSphere& sphere : spheres) {
+  for (const CollisionSphere& sphere : spheres) {
     const auto j = static_cast<size_t>(sphere.joint_idx);
     bounds[j].centre_in_joint += (sphere.centre_in_joint - bounds[j].centre_in_joint) / ++count[j];
   }
-  for (const FleshSphere& sphere : spheres) {
-    FleshSphere& bound = bounds[static_cast<size_t>(sphere.joint_idx)];
+  for (const CollisionSphere& sphere : spheres) {
+    CollisionSphere& bound = bounds[static_cast<size_t>(sphere.joint_idx)];
     bound.radius = std::max(bound.radius, (sphere.centre_in_joint - bound.centre_in_joint).norm() + sphere.radius);
   }
   return bounds;
@@ -92,28 +92,28 @@ std::vector<FleshSphere> bounds_of(size_t num_joints, const std::vector<FleshSph
 
 }  // namespace
 
-Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : body_(std::move(body)) {
-  check(body_ != nullptr, "Plausibility: no body");
+PosePrior::PosePrior(std::shared_ptr<const BodyModel> body, bool floor) : body_(std::move(body)) {
+  check(body_ != nullptr, "PosePrior: no body");
   check_profile(body_->profile, body_->skeleton);
   const Skeleton& skeleton = body_->skeleton;
-  spheres_ = flesh_spheres(*body_);
+  spheres_ = collision_spheres(*body_);
   bounds_ = bounds_of(skeleton.joints().size(), spheres_);
 
   const PointMotion hanging(skeleton, std::vector<double>(skeleton.dofs().size(), 0.0));
   if (floor) points_ = outermost_points(*body_);
 
-  const auto distance_at_zero = [&](const FleshSphere& a, const FleshSphere& b) {
+  const auto distance_at_zero = [&](const CollisionSphere& a, const CollisionSphere& b) {
     return (hanging.position(a.joint_idx, a.centre_in_joint) - hanging.position(b.joint_idx, b.centre_in_joint)).norm();
   };
-  const auto distance_at_rest = [&](const FleshSphere& a, const FleshSphere& b) {
-    const auto in_rest = [&](const FleshSphere& s) {
+  const auto distance_at_rest = [&](const CollisionSphere& a, const CollisionSphere& b) {
+    const auto in_rest = [&](const CollisionSphere& s) {
       return body_->joint_from_rest[static_cast<size_t>(s.joint_idx)].inverse() * s.centre_in_joint;
     };
     return (in_rest(a) - in_rest(b)).norm();
   };
   for (int i = 0; i < std::ssize(spheres_); ++i) {
     for (int j = 0; j < i; ++j) {
-      const FleshSphere &a = spheres_[static_cast<size_t>(j)], &b = spheres_[static_cast<size_t>(i)];
+      const CollisionSphere &a = spheres_[static_cast<size_t>(j)], &b = spheres_[static_cast<size_t>(i)];
       if (distance_along_bones(skeleton, a, b) < kNeighbours * (a.radius + b.radius)) continue;
       const double nearest = std::min(distance_at_zero(a, b), distance_at_rest(a, b));
       const double reach = std::min(a.radius + b.radius, nearest) - kYield;
@@ -128,7 +128,7 @@ Plausibility::Plausibility(std::shared_ptr<const BodyModel> body, bool floor) : 
 
 // visit(a, b, x_a, x_b, overlap) for spheres that overlap by more than at rest.
 template <typename Visit>
-void Plausibility::for_each_overlap(const PointMotion& motion, const Visit& visit) const {
+void PosePrior::for_each_overlap(const PointMotion& motion, const Visit& visit) const {
   std::vector<Vector3d> middles;
   for (size_t j = 0; j < bounds_.size(); ++j) {
     middles.push_back(motion.position(static_cast<int>(j), bounds_[j].centre_in_joint));
@@ -138,7 +138,8 @@ void Plausibility::for_each_overlap(const PointMotion& motion, const Visit& visi
     const double bound = bounds_[a].radius + bounds_[b].radius;
     if ((middles[a] - middles[b]).squaredNorm() >= bound * bound) continue;
     for (const SpherePair& touch : pair.spheres) {
-      const FleshSphere &one = spheres_[static_cast<size_t>(touch.a)], &other = spheres_[static_cast<size_t>(touch.b)];
+      const CollisionSphere &one = spheres_[static_cast<size_t>(touch.a)],
+                            &other = spheres_[static_cast<size_t>(touch.b)];
       const Vector3d x = motion.position(one.joint_idx, one.centre_in_joint);
       const Vector3d y = motion.position(other.joint_idx, other.centre_in_joint);
       const double squared = (x - y).squaredNorm();
@@ -147,22 +148,22 @@ void Plausibility::for_each_overlap(const PointMotion& motion, const Visit& visi
   }
 }
 
-double Plausibility::add_penetration(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
+double PosePrior::add_penetration(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
   constexpr double kWeight = 1 / (kOverlapDeviation * kOverlapDeviation);
   double cost = 0;
   VectorXd row(gradient.size());
-  for_each_overlap(
-      motion, [&](const FleshSphere& a, const FleshSphere& b, const Vector3d& x, const Vector3d& y, double overlap) {
-        const Vector3d closer = (y - x).stableNormalized();  // moving a along it makes the overlap larger
-        row.setZero();
-        motion.add_derivative(a.joint_idx, x, closer, row);
-        motion.add_derivative(b.joint_idx, y, -closer, row);
-        cost += add_residual(overlap, kWeight, row, gradient, hessian);
-      });
+  for_each_overlap(motion, [&](const CollisionSphere& a, const CollisionSphere& b, const Vector3d& x, const Vector3d& y,
+                               double overlap) {
+    const Vector3d closer = (y - x).stableNormalized();  // moving a along it makes the overlap larger
+    row.setZero();
+    motion.add_derivative(a.joint_idx, x, closer, row);
+    motion.add_derivative(b.joint_idx, y, -closer, row);
+    cost += add_residual(overlap, kWeight, row, gradient, hessian);
+  });
   return cost;
 }
 
-double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
+double PosePrior::add_floor(const PointMotion& motion, VectorXd& gradient, MatrixXd& hessian) const {
   constexpr double kWeight = 1 / (kFloorDeviation * kFloorDeviation);
   std::vector<Vector3d> positions;
   positions.reserve(points_.size());
@@ -184,7 +185,7 @@ double Plausibility::add_floor(const PointMotion& motion, VectorXd& gradient, Ma
   return cost;
 }
 
-double Plausibility::add(const VectorXd& pose, const RestPull& rest, VectorXd& gradient, MatrixXd& hessian) const {
+double PosePrior::add(const VectorXd& pose, const RestPull& rest, VectorXd& gradient, MatrixXd& hessian) const {
   const PointMotion motion(body_->skeleton, {pose.data(), static_cast<size_t>(pose.size())});
   return add_limits(body_->skeleton, pose, gradient, hessian) +
          (rest.weight > 0

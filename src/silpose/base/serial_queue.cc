@@ -1,4 +1,4 @@
-#include "silpose/base/job_line.h"
+#include "silpose/base/serial_queue.h"
 
 #include <utility>
 
@@ -7,12 +7,12 @@
 
 namespace silpose {
 
-JobLine::JobLine(size_t most_waiting) : most_waiting_(most_waiting) {
-  check(most_waiting > 0, "JobLine: room for no job");
+SerialQueue::SerialQueue(size_t most_waiting) : most_waiting_(most_waiting) {
+  check(most_waiting > 0, "SerialQueue: room for no job");
   worker_ = std::thread([this] { work(); });
 }
 
-JobLine::~JobLine() {
+SerialQueue::~SerialQueue() {
   {
     const std::scoped_lock lock(mutex_);
     is_over_ = true;
@@ -21,7 +21,7 @@ JobLine::~JobLine() {
   worker_.join();
 }
 
-void JobLine::work() {
+void SerialQueue::work() {
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [&] { return is_over_ || !waiting_.empty(); });
@@ -51,13 +51,13 @@ void JobLine::work() {
   }
 }
 
-Result<void> JobLine::take_error() {
+Result<void> SerialQueue::take_error() {
   if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
   if (failure_) return *std::exchange(failure_, std::nullopt);
   return {};
 }
 
-Result<void> JobLine::give(Job job) {
+Result<void> SerialQueue::submit(Job job) {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return waiting_.size() < most_waiting_ || has_failed_; });
   if (Result<void> earlier = take_error(); !earlier) return earlier;
@@ -67,13 +67,13 @@ Result<void> JobLine::give(Job job) {
   return {};
 }
 
-Result<void> JobLine::finish() {
+Result<void> SerialQueue::finish() {
   std::unique_lock lock(mutex_);
   changed_.wait(lock, [&] { return (waiting_.empty() && !is_busy_) || has_failed_; });
   return take_error();
 }
 
-double JobLine::take_seconds() {
+double SerialQueue::take_seconds() {
   const std::scoped_lock lock(mutex_);
   return std::exchange(seconds_, 0);
 }

@@ -1,4 +1,4 @@
-#include "silpose/exchange/steady_angles.h"
+#include "silpose/exchange/unwrapped_euler.h"
 
 #include <gtest/gtest.h>
 

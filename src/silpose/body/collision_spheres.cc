@@ -1,4 +1,4 @@
-#include "silpose/body/flesh.h"
+#include "silpose/body/collision_spheres.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,9 +50,9 @@ float largest_ball(const std::vector<Eigen::Vector3f>& vertices, const Eigen::Ve
   return least;
 }
 
-std::vector<FleshSphere> spheres_of_joint(const BodyModel& body, int joint_idx, const std::vector<uint32_t>& own,
-                                          const std::vector<Eigen::Vector3f>& normals) {
-  std::vector<FleshSphere> balls;
+std::vector<CollisionSphere> spheres_of_joint(const BodyModel& body, int joint_idx, const std::vector<uint32_t>& own,
+                                              const std::vector<Eigen::Vector3f>& normals) {
+  std::vector<CollisionSphere> balls;
   const size_t stride = (own.size() + kMostTouched - 1) / kMostTouched;
   for (size_t i = 0; i < own.size(); i += stride) {
     const Eigen::Vector3f& x = body.rest.vertices[own[i]];
@@ -61,11 +61,11 @@ std::vector<FleshSphere> spheres_of_joint(const BodyModel& body, int joint_idx, 
     const Eigen::Vector3d centre = (x - radius * normals[own[i]]).cast<double>();
     balls.push_back({joint_idx, body.joint_from_rest[static_cast<size_t>(joint_idx)] * centre, radius});
   }
-  std::ranges::stable_sort(balls, std::greater<>{}, &FleshSphere::radius);
-  std::vector<FleshSphere> kept;
-  for (const FleshSphere& ball : balls) {
+  std::ranges::stable_sort(balls, std::greater<>{}, &CollisionSphere::radius);
+  std::vector<CollisionSphere> kept;
+  for (const CollisionSphere& ball : balls) {
     if (kept.size() == kMostSpheres || ball.radius < kSmallest * balls.front().radius) break;
-    const bool apart = std::ranges::all_of(kept, [&](const FleshSphere& other) {
+    const bool apart = std::ranges::all_of(kept, [&](const CollisionSphere& other) {
       return (ball.centre_in_joint - other.centre_in_joint).norm() > kApart * other.radius;
     });
     if (apart) kept.push_back(ball);
@@ -83,16 +83,16 @@ constexpr double kOffMiddleX = 0.4931, kOffMiddleY = 0.5077;  // of a column: no
 
 }  // namespace
 
-std::vector<FleshSphere> flesh_spheres(const BodyModel& body) {
+std::vector<CollisionSphere> collision_spheres(const BodyModel& body) {
   const auto by_joint = vertices_by_joint(body);
   const auto normals = vertex_normals(body.rest);
-  std::vector<std::vector<FleshSphere>> of_joint(by_joint.size());
+  std::vector<std::vector<CollisionSphere>> of_joint(by_joint.size());
   parallel_for(by_joint.size(), 1, [&](size_t begin, size_t end) {
     for (size_t j = begin; j < end; ++j) {
       of_joint[j] = spheres_of_joint(body, static_cast<int>(j), by_joint[j], normals);
     }
   });
-  std::vector<FleshSphere> all;
+  std::vector<CollisionSphere> all;
   for (const auto& some : of_joint) all.insert(all.end(), some.begin(), some.end());
   return all;
 }
@@ -118,7 +118,7 @@ std::vector<SkinPoint> outermost_points(const BodyModel& body) {
   return points;
 }
 
-std::vector<std::optional<Eigen::Vector3d>> flesh_centres(const BodyModel& body) {
+std::vector<std::optional<Eigen::Vector3d>> segment_centres(const BodyModel& body) {
   const std::vector<Eigen::Vector3f>& vertices = body.rest.vertices;
   Eigen::Vector3f lowest = vertices.front(), highest = vertices.front();
   for (const Eigen::Vector3f& x : vertices) lowest = lowest.cwiseMin(x), highest = highest.cwiseMax(x);
