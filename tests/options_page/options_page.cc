@@ -13,7 +13,7 @@
 namespace silpose {
 namespace {
 
-constexpr const char* kCommand = "build/release/tests/options_page docs/options.md";
+constexpr const char* kCommand = "build/release/tests/options_page/options_page docs/options.md";
 
 std::string row(const std::vector<std::string>& cells) {
   std::string line = "|";

@@ -203,7 +203,8 @@ TEST(FirstOrderAugmented, BoundedTranslationsStopAtTheirLimits) {
   StateBatch states = StateBatch::Zero(1, 2);
   states(0, 1) = 1;
   for (uint64_t step = 0; step < 5; ++step) model->propagate(states, 0.1, 1, step);
-  EXPECT_EQ(states(0, 0), 0.2);
+  EXPECT_NEAR(states(0, 0), 0.2, 1e-9);  // noise moves it off its end again
+  EXPECT_LE(states(0, 0), 0.2);
   EXPECT_NEAR(states(0, 1), 0, 1e-9);
 }
 
