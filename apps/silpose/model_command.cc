@@ -63,16 +63,42 @@ Result<Outcome> inspect_model(const std::string& model, Console& console) {
   return outcome;
 }
 
+struct ModelOptions {
+  std::string model = "human", out;
+  bool if_older = false;
+  std::optional<int> vertices;
+  std::optional<double> iou;
+};
+
+Result<Outcome> build_model(const ModelOptions& options, Console& console) {
+  if (options.if_older) {
+    const std::optional<BodyModel> kept = kept_human(options.out);
+    if (kept) return Outcome{.json = facts_of(*kept), .text = summary_of(*kept)};
+  }
+  const Result<BodyModel> body = build_body(options.model, console);
+  if (!body) return body.failure();
+  return write_model(*body, options.out);
+}
+
+Result<Outcome> model_with_levels(const ModelOptions& options, Console& console) {
+  const auto body = choose_body(options.model, console);
+  if (!body) return body.failure();
+  if (options.vertices) return write_model(level_of_detail(**body, *options.vertices), options.out);
+  BodyModel with_levels = **body;
+  if (!options.iou || with_levels.levels.empty()) {
+    console.message("building its levels of detail");
+    add_levels(with_levels);
+  }
+  if (!options.iou) return write_model(with_levels, options.out);
+  const Result<const BodyLevel*> level = choose_level(with_levels, *options.iou);
+  if (!level) return level.failure();
+  return write_model(body_of_level(with_levels, **level), options.out);
+}
+
 }  // namespace
 
 std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
-  struct Options {
-    std::string model = "human", out;
-    bool if_older = false;
-    std::optional<int> vertices;
-    std::optional<double> iou;
-  };
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ModelOptions>();
   CLI::App* const model = program.add_subcommand("model", "Body models");
   model->require_subcommand(1);
 
@@ -99,32 +125,9 @@ std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
 
   return {
       {list, [](Console&) { return list_models(); }},
-      {build,
-       [options](Console& console) -> Result<Outcome> {
-         if (options->if_older) {
-           const std::optional<BodyModel> kept = kept_human(options->out);
-           if (kept) return Outcome{.json = facts_of(*kept), .text = summary_of(*kept)};
-         }
-         const Result<BodyModel> body = build_body(options->model, console);
-         if (!body) return body.failure();
-         return write_model(*body, options->out);
-       }},
+      {build, [options](Console& console) { return build_model(*options, console); }},
       {inspect, [options](Console& console) { return inspect_model(options->model, console); }},
-      {lod,
-       [options](Console& console) -> Result<Outcome> {
-         const auto body = choose_body(options->model, console);
-         if (!body) return body.failure();
-         if (options->vertices) return write_model(level_of_detail(**body, *options->vertices), options->out);
-         BodyModel with_levels = **body;
-         if (!options->iou || with_levels.levels.empty()) {
-           console.message("building its levels of detail");
-           add_levels(with_levels);
-         }
-         if (!options->iou) return write_model(with_levels, options->out);
-         const Result<const BodyLevel*> level = choose_level(with_levels, *options->iou);
-         if (!level) return level.failure();
-         return write_model(body_of_level(with_levels, **level), options->out);
-       }},
+      {lod, [options](Console& console) { return model_with_levels(*options, console); }},
       add_model_fit(*model, common),
   };
 }

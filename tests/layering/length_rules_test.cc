@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <limits>
 
 namespace silpose {
 namespace {
@@ -17,18 +16,8 @@ namespace fs = std::filesystem;
 
 const std::string kProject = SILPOSE_SOURCE_DIR;
 
-TEST(Project, HasShortFiles) {
-  const LengthLimits of_files{.function = std::numeric_limits<size_t>::max()};
-  EXPECT_THAT(length_violations(kProject, {"src", "apps", "bench"}, of_files), IsEmpty());
-}
-// All but apps and src/silpose/{body,experiment,motion,track}, in which a few functions are still longer.
-TEST(Project, HasShortFunctions) {
-  std::vector<std::string> folders = {"bench", "src/sadb"};
-  for (const char* module : {"base", "calibrate", "evaluate", "exchange", "filter", "geometry", "image", "likelihood",
-                             "recording", "render", "report", "segment", "shape", "synth", "video"}) {
-    folders.push_back(std::string("src/silpose/") + module);
-  }
-  EXPECT_THAT(length_violations(kProject, folders), IsEmpty());
+TEST(Project, HasShortFilesAndFunctions) {
+  EXPECT_THAT(length_violations(kProject, {"src", "apps", "bench"}), IsEmpty());
 }
 
 class LengthRules : public testing::Test {

@@ -62,81 +62,78 @@ std::optional<double> find_row(std::span<const DeviationRow> table, const Dof& d
 
 struct Angle {
   std::string_view dof;  // "both_" stands for right and left
-  double degrees;
+  double degrees = 0;
 };
 
 struct PoseRow {
   std::string_view name;
-  std::vector<Angle> angles;
+  Angle angles[10];  // the last ones without a name
 };
 
-const std::vector<PoseRow>& pose_rows() {
-  static const std::vector<PoseRow> rows = {
-      {"standing", {{"both_upper_arm_rz", 8}, {"both_forearm_rx", 10}}},
-      {"right stride",
-       {{"right_thigh_rx", 28},
-        {"right_shin_rx", 8},
-        {"left_thigh_rx", -18},
-        {"left_shin_rx", 20},
-        {"left_foot_rx", -10},
-        {"right_upper_arm_rx", -20},
-        {"left_upper_arm_rx", 22},
-        {"both_upper_arm_rz", 6},
-        {"right_forearm_rx", 15},
-        {"left_forearm_rx", 30}}},
-      {"left stride",
-       {{"left_thigh_rx", 28},
-        {"left_shin_rx", 8},
-        {"right_thigh_rx", -18},
-        {"right_shin_rx", 20},
-        {"right_foot_rx", -10},
-        {"left_upper_arm_rx", -20},
-        {"right_upper_arm_rx", 22},
-        {"both_upper_arm_rz", 6},
-        {"left_forearm_rx", 15},
-        {"right_forearm_rx", 30}}},
-      {"right leg passing",
-       {{"right_thigh_rx", 22},
-        {"right_shin_rx", 58},
-        {"left_shin_rx", 5},
-        {"both_upper_arm_rz", 6},
-        {"both_forearm_rx", 20}}},
-      {"left leg passing",
-       {{"left_thigh_rx", 22},
-        {"left_shin_rx", 58},
-        {"right_shin_rx", 5},
-        {"both_upper_arm_rz", 6},
-        {"both_forearm_rx", 20}}},
-      {"a-pose", {{"both_upper_arm_rz", 42}, {"both_thigh_rz", 6}}},
-      {"t-pose", {{"both_upper_arm_rz", 90}}},
-      {"arms raised", {{"both_upper_arm_rz", 160}, {"both_forearm_rx", 15}}},
-      {"right arm raised", {{"right_upper_arm_rz", 150}, {"left_upper_arm_rz", 8}, {"both_forearm_rx", 20}}},
-      {"left arm raised", {{"left_upper_arm_rz", 150}, {"right_upper_arm_rz", 8}, {"both_forearm_rx", 20}}},
-      {"arms forward", {{"both_upper_arm_rx", 85}, {"both_forearm_rx", 10}}},
-      {"hands on hips",
-       {{"both_upper_arm_rz", 45}, {"both_upper_arm_rx", -15}, {"both_upper_arm_ry", 75}, {"both_forearm_rx", 90}}},
-      {"elbows bent", {{"both_upper_arm_rz", 10}, {"both_upper_arm_rx", 5}, {"both_forearm_rx", 90}}},
-      {"wide stance", {{"both_thigh_rz", 20}, {"both_upper_arm_rz", 20}}},
-      {"crouch",
-       {{"both_thigh_rx", 50},
-        {"both_shin_rx", 75},
-        {"both_foot_rx", 25},
-        {"abdomen_rx", 20},
-        {"thorax_rx", 10},
-        {"both_upper_arm_rx", 25},
-        {"both_upper_arm_rz", 10},
-        {"both_forearm_rx", 40}}},
-      {"bent forward", {{"both_thigh_rx", 15}, {"abdomen_rx", 40}, {"thorax_rx", 20}, {"both_upper_arm_rx", 40}}},
-      {"sitting",
-       {{"both_thigh_rx", 85},
-        {"both_thigh_rz", 8},
-        {"both_shin_rx", 85},
-        {"both_upper_arm_rx", 15},
-        {"both_upper_arm_rz", 8},
-        {"both_forearm_rx", 60}}},
-  };
-  return rows;
-}
+constexpr PoseRow kPoses[] = {
+    {"standing", {{"both_upper_arm_rz", 8}, {"both_forearm_rx", 10}}},
+    {"right stride",
+     {{"right_thigh_rx", 28},
+      {"right_shin_rx", 8},
+      {"left_thigh_rx", -18},
+      {"left_shin_rx", 20},
+      {"left_foot_rx", -10},
+      {"right_upper_arm_rx", -20},
+      {"left_upper_arm_rx", 22},
+      {"both_upper_arm_rz", 6},
+      {"right_forearm_rx", 15},
+      {"left_forearm_rx", 30}}},
+    {"left stride",
+     {{"left_thigh_rx", 28},
+      {"left_shin_rx", 8},
+      {"right_thigh_rx", -18},
+      {"right_shin_rx", 20},
+      {"right_foot_rx", -10},
+      {"left_upper_arm_rx", -20},
+      {"right_upper_arm_rx", 22},
+      {"both_upper_arm_rz", 6},
+      {"left_forearm_rx", 15},
+      {"right_forearm_rx", 30}}},
+    {"right leg passing",
+     {{"right_thigh_rx", 22},
+      {"right_shin_rx", 58},
+      {"left_shin_rx", 5},
+      {"both_upper_arm_rz", 6},
+      {"both_forearm_rx", 20}}},
+    {"left leg passing",
+     {{"left_thigh_rx", 22},
+      {"left_shin_rx", 58},
+      {"right_shin_rx", 5},
+      {"both_upper_arm_rz", 6},
+      {"both_forearm_rx", 20}}},
+    {"a-pose", {{"both_upper_arm_rz", 42}, {"both_thigh_rz", 6}}},
+    {"t-pose", {{"both_upper_arm_rz", 90}}},
+    {"arms raised", {{"both_upper_arm_rz", 160}, {"both_forearm_rx", 15}}},
+    {"right arm raised", {{"right_upper_arm_rz", 150}, {"left_upper_arm_rz", 8}, {"both_forearm_rx", 20}}},
+    {"left arm raised", {{"left_upper_arm_rz", 150}, {"right_upper_arm_rz", 8}, {"both_forearm_rx", 20}}},
+    {"arms forward", {{"both_upper_arm_rx", 85}, {"both_forearm_rx", 10}}},
+    {"hands on hips",
+     {{"both_upper_arm_rz", 45}, {"both_upper_arm_rx", -15}, {"both_upper_arm_ry", 75}, {"both_forearm_rx", 90}}},
+    {"elbows bent", {{"both_upper_arm_rz", 10}, {"both_upper_arm_rx", 5}, {"both_forearm_rx", 90}}},
+    {"wide stance", {{"both_thigh_rz", 20}, {"both_upper_arm_rz", 20}}},
+    {"crouch",
+     {{"both_thigh_rx", 50},
+      {"both_shin_rx", 75},
+      {"both_foot_rx", 25},
+      {"abdomen_rx", 20},
+      {"thorax_rx", 10},
+      {"both_upper_arm_rx", 25},
+      {"both_upper_arm_rz", 10},
+      {"both_forearm_rx", 40}}},
+    {"bent forward", {{"both_thigh_rx", 15}, {"abdomen_rx", 40}, {"thorax_rx", 20}, {"both_upper_arm_rx", 40}}},
+    {"sitting",
+     {{"both_thigh_rx", 85},
+      {"both_thigh_rz", 8},
+      {"both_shin_rx", 85},
+      {"both_upper_arm_rx", 15},
+      {"both_upper_arm_rz", 8},
+      {"both_forearm_rx", 60}}},
+};
 
 void set_angle(const Skeleton& skeleton, std::string_view name, double degrees, std::vector<double>& pose) {
   constexpr std::string_view kBoth = "both_";
@@ -217,9 +214,11 @@ RigProfile human_profile(const Skeleton& skeleton) {
   profile.origin = {"right_thigh", "left_thigh"};
   set_deviations(skeleton, profile);
   profile.poses.clear();
-  for (const PoseRow& row : pose_rows()) {
+  for (const PoseRow& row : kPoses) {
     std::vector<double> pose(static_cast<size_t>(skeleton.num_dofs()), 0.0);
-    for (const Angle& angle : row.angles) set_angle(skeleton, angle.dof, angle.degrees, pose);
+    for (const Angle& angle : row.angles) {
+      if (!angle.dof.empty()) set_angle(skeleton, angle.dof, angle.degrees, pose);
+    }
     profile.poses.push_back({std::string(row.name), std::move(pose)});
   }
   profile.silhouette_area = kSilhouetteArea;

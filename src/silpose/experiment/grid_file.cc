@@ -285,19 +285,42 @@ Result<Quick> read_quick(const toml::table& root, const std::string& file) {
   return quick;
 }
 
+Result<toml::table> parse_file(const std::filesystem::path& path) {
+  const Result<std::string> text = read_text_file(path);
+  if (!text) return text.failure();
+  try {
+    return toml::parse(std::string_view(*text));
+  } catch (const toml::parse_error& broken) {
+    return error("{}: line {}: {}", path.string(), broken.source().begin.line, broken.description());
+  }
+}
+
+// What is made of the results: tables and plots.
+Result<void> read_outputs(const toml::table& root, const std::string& file, Grid& grid) {
+  const auto tables = tables_of(root, "table", file), plots = tables_of(root, "plot", file);
+  if (!tables) return tables.failure();
+  if (!plots) return plots.failure();
+  if (tables->empty()) return error("{}: table: at least one [[table]] is wanted", file);
+  for (const toml::table* const table : *tables) {
+    Result<TableDescription> description = read_table(*table, grid, file);
+    if (!description) return description.failure();
+    grid.tables.push_back(std::move(*description));
+  }
+  for (const toml::table* const table : *plots) {
+    Result<PlotDescription> plot = read_plot(*table, grid, file);
+    if (!plot) return plot.failure();
+    grid.plots.push_back(std::move(*plot));
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<Grid> read_grid(const std::filesystem::path& path, bool quick_wanted) {
   const std::string file = path.string();
-  const Result<std::string> text = read_text_file(path);
-  if (!text) return text.failure();
-  toml::table root;
-  try {
-    root = toml::parse(std::string_view(*text));
-  } catch (const toml::parse_error& broken) {
-    return error("{}: line {}: {}", file, broken.source().begin.line, broken.description());
-  }
-
+  const Result<toml::table> parsed = parse_file(path);
+  if (!parsed) return parsed.failure();
+  const toml::table& root = *parsed;
   Grid grid;
   grid.name = path.stem().string();
   grid.folder = path.parent_path();
@@ -345,20 +368,7 @@ Result<Grid> read_grid(const std::filesystem::path& path, bool quick_wanted) {
   const Result<void> made = make_cells(axes, left_out, quick_wanted ? quick->run : nullptr, base, file, grid);
   if (!made) return made.failure();
 
-  const auto tables = tables_of(root, "table", file), plots = tables_of(root, "plot", file);
-  if (!tables) return tables.failure();
-  if (!plots) return plots.failure();
-  if (tables->empty()) return error("{}: table: at least one [[table]] is wanted", file);
-  for (const toml::table* const table : *tables) {
-    Result<TableDescription> description = read_table(*table, grid, file);
-    if (!description) return description.failure();
-    grid.tables.push_back(std::move(*description));
-  }
-  for (const toml::table* const table : *plots) {
-    Result<PlotDescription> plot = read_plot(*table, grid, file);
-    if (!plot) return plot.failure();
-    grid.plots.push_back(std::move(*plot));
-  }
+  if (const Result<void> read = read_outputs(root, file, grid); !read) return read.failure();
   return grid;
 }
 

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <iterator>
 
 #include "silpose/track/tracker_presets.h"
 
@@ -161,13 +163,11 @@ struct BadGrid {
   std::string text, says;
 };
 
-TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
-  const std::string axis = "[[axis]]\nname = \"view\"\n";
-  const auto clip = [](const std::string& more, bool names_one = true) {
-    return fmt::format("run = {{ camera = \"c.toml\", truth = \"t\", {}{} }}\n",
-                       names_one ? "clip = [\"a.mp4\"], " : "", more);
-  };
-  const std::vector<BadGrid> all = {
+const std::string kViewAxis = "[[axis]]\nname = \"view\"\n";
+
+std::vector<BadGrid> bad_grids() {
+  const std::string& axis = kViewAxis;
+  return {
       {"run = { frames = -3 }\n", "run.frames: -3 is not a whole number from 0 to 1000000"},
       {"run = { frames = 2.5 }\n", "run.frames: 2.5 is not a whole number"},
       {"run = { fps = \"fast\" }\n", "run.fps: 'fast' is not a number from 0.1 to 10000"},
@@ -196,6 +196,20 @@ TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
       {"[[plot]]\nname = \"p\"\nx = \"frame\"\n", "plot.figure: is missing"},
       {"[[plot]]\nname = \"p\"\nx = \"clip\"\nfigure = \"iou\"\n", "no axis 'clip'"},
       {"seeds = = 3\n", "line 1"},
+      {"without = 3\n", "without: [[without]] is wanted"},
+      {"[[without]]\n", "without: names no axis"},
+      {"[[without]]\nclip = [\"a\"]\n", "without.clip: no such axis"},
+      {axis + "key = \"view\"\nvalues = [\"side\"]\n[[without]]\nview = [\"front\"]\n", "the axis has no 'front'"},
+      {axis + "key = \"view\"\nvalues = [\"side\"]\n[[without]]\nview = [\"side\"]\n", "without: leaves no cell"},
+  };
+}
+
+std::vector<BadGrid> bad_runs() {
+  const auto clip = [](const std::string& more, bool names_one = true) {
+    return fmt::format("run = {{ camera = \"c.toml\", truth = \"t\", {}{} }}\n",
+                       names_one ? "clip = [\"a.mp4\"], " : "", more);
+  };
+  return {
       {"run = { truth = \"a\" }\n", "run.truth: needs clip"},
       {"run = { clip = [] }\n", "run.clip: needs clip, a list of videos"},
       {"run = { clip = \"a.mp4\" }\n", "run.clip: 'a.mp4' is not a list of texts"},
@@ -219,12 +233,12 @@ TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
       {"run = { hypotheses = 2, particles = 50 }\n", "run.hypotheses: not together with particles"},
       {"run = { tracker_motion = \"diffusion\" }\n", "run.tracker_motion: needs particles, layers or preset thesis"},
       {"run = { root = \"fixed\" }\n", "run.root: needs particles, layers or preset thesis"},
-      {"without = 3\n", "without: [[without]] is wanted"},
-      {"[[without]]\n", "without: names no axis"},
-      {"[[without]]\nclip = [\"a\"]\n", "without.clip: no such axis"},
-      {axis + "key = \"view\"\nvalues = [\"side\"]\n[[without]]\nview = [\"front\"]\n", "the axis has no 'front'"},
-      {axis + "key = \"view\"\nvalues = [\"side\"]\n[[without]]\nview = [\"side\"]\n", "without: leaves no cell"},
   };
+}
+
+TEST(ReadGrid, SaysOneLineThatNamesFileAndKey) {
+  std::vector<BadGrid> all = bad_grids();
+  std::ranges::move(bad_runs(), std::back_inserter(all));
   for (const BadGrid& bad : all) {
     const bool has_table = bad.text.find("[[table]]") != std::string::npos;
     const Result<Grid> grid = read(bad.text + (has_table ? "" : kTable));

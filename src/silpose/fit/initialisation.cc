@@ -201,27 +201,14 @@ void search_limbs(const StartContext& context, const InitialisationOptions& opti
   }
 }
 
-}  // namespace
-
-std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const PosePrior& pose_prior,
-                                     std::span<const Observation> observations, const StateBatch& candidates,
+// The placed candidates fitted coarsely, the best of each heading finely, also as a mirror in depth shows them.
+std::vector<Candidate> fitted_starts(const StartContext& context, const StateBatch& placed,
                                      const InitialisationOptions& options) {
-  check(candidates.rows() > 0, "initialise: no candidates");
-  const BodyModel& body = likelihood.body();
-  const Skeleton& skeleton = body.skeleton;
-  CoverageEvidence evidence = likelihood.prepare(observations, Blur::k32, Blur::k2, options.evidence);
-  const std::optional<size_t> seen = evidence.first_seen();
-  check(seen.has_value(), "initialise: no camera found anything");
-  const PinholeCamera& camera = likelihood.cameras()[*seen];
-
-  const StateBatch placed = place_on_mask(body, camera, observations[*seen], candidates);
+  const BodyModel& body = context.body();
   std::vector<Candidate> starts(static_cast<size_t>(placed.rows()));
   for (size_t k = 0; k < starts.size(); ++k) {
-    starts[k] = candidate_at(body, {placed.row(static_cast<Eigen::Index>(k)).data(), skeleton.dofs().size()});
+    starts[k] = candidate_at(body, {placed.row(static_cast<Eigen::Index>(k)).data(), body.skeleton.dofs().size()});
   }
-  const StartContext context{likelihood, pose_prior, evidence, camera.centre_in_world()};
-  const auto has_keypoints = [](const CoverageEvidence::View& view) { return view.keypoints != nullptr; };
-  const double facing_bonus = std::ranges::any_of(evidence.views, has_keypoints) ? 0 : options.facing_bonus;
   fit_all(context, kCoarseStages, starts);
   sort_best_first(starts);
   std::array<int, kNumSectors> taken{};
@@ -240,18 +227,25 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
   }
   fit_all(context, kFineStages, mirrored);
   std::ranges::move(mirrored, std::back_inserter(starts));
+  return starts;
+}
 
-  // The quality of the best fit shows how much the differences between fits mean. During the search, outlines are taken
-  // for no better than exact masks have them.
-  CoverageLikelihood::Scratch scratch(likelihood);
+// The quality of the best fit shows how much the differences between fits mean. During the search, outlines are taken
+// for no better than exact masks have them.
+std::vector<double> noise_of_search(const StartContext& context, std::span<const Candidate> starts,
+                                    CoverageLikelihood::Scratch& scratch) {
   std::vector<Eigen::VectorXd> poses;
   poses.reserve(starts.size());
   for (const Candidate& start : starts) poses.push_back(start.fit.pose);
-  std::vector<double> noise = likelihood.least_noise(evidence, poses, scratch);
+  std::vector<double> noise = context.likelihood.least_noise(context.evidence, poses, scratch);
   for (double& of_camera : noise) of_camera = std::max(of_camera, CoverageLikelihood::kExactNoise);
-  set_noise(likelihood, noise, evidence, starts, scratch);
-  sort_best_first(starts);
-  std::vector<std::vector<Candidate>> headings = by_heading(body.profile, std::move(starts));
+  return noise;
+}
+
+// Tries other limbs heading by heading, until one explains the silhouette; then from the best of all, against each
+// other; then from poses that look like them and are far away, while it helps. `starts`: sorted, best first.
+void search(const StartContext& context, const InitialisationOptions& options, std::vector<Candidate>& starts) {
+  std::vector<std::vector<Candidate>> headings = by_heading(context.body().profile, std::move(starts));
   starts.clear();
   double least = std::numeric_limits<double>::infinity();
   for (size_t i = 0; i < headings.size(); ++i) {
@@ -262,8 +256,6 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
     least = std::min(least, headings[h].front().fit.energy);
     std::ranges::move(headings[h], std::back_inserter(starts));
   }
-  // The best of all once more, against each other; then from poses that look like them and are far away, while it
-  // helps.
   uint64_t index = headings.size();
   search_limbs(context, options, {index++, least, options.patience}, starts);
   for (int round = 0; round < options.num_distant_rounds && starts.front().fit.energy > kExplained; ++round) {
@@ -275,15 +267,39 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
     search_limbs(context, options, {index++, starts.front().fit.energy, options.patience}, starts);
     if (starts.front().cost() > kStaleCost * before) break;
   }
+}
 
-  noise = likelihood.estimate_noise(evidence, view(starts.front().fit.pose), scratch);
+}  // namespace
+
+std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const PosePrior& pose_prior,
+                                     std::span<const Observation> observations, const StateBatch& candidates,
+                                     const InitialisationOptions& options) {
+  check(candidates.rows() > 0, "initialise: no candidates");
+  const BodyModel& body = likelihood.body();
+  CoverageEvidence evidence = likelihood.prepare(observations, Blur::k32, Blur::k2, options.evidence);
+  const std::optional<size_t> seen = evidence.first_seen();
+  check(seen.has_value(), "initialise: no camera found anything");
+  const PinholeCamera& camera = likelihood.cameras()[*seen];
+  const StartContext context{likelihood, pose_prior, evidence, camera.centre_in_world()};
+  const StateBatch placed = place_on_mask(body, camera, observations[*seen], candidates);
+  std::vector<Candidate> starts = fitted_starts(context, placed, options);
+  CoverageLikelihood::Scratch scratch(likelihood);
+  set_noise(likelihood, noise_of_search(context, starts, scratch), evidence, starts, scratch);
+  sort_best_first(starts);
+  search(context, options, starts);
+
+  const std::vector<double> noise = likelihood.estimate_noise(evidence, view(starts.front().fit.pose), scratch);
   set_noise(likelihood, noise, evidence, starts, scratch);
+  const auto has_keypoints = [](const CoverageEvidence::View& view) { return view.keypoints != nullptr; };
+  const double facing_bonus = std::ranges::any_of(evidence.views, has_keypoints) ? 0 : options.facing_bonus;
   const auto log_likelihood = [&](const Candidate& c) {
     return -0.5 * c.cost() + facing_bonus * faces_camera(body, camera, view(c.fit.pose));
   };
   std::ranges::stable_sort(starts, std::greater<>{}, log_likelihood);
   // The filter may use silhouettes alone: poses that fit these as well but contradict the keypoints must be excluded.
-  const auto keypoint_cost = [&](const Candidate& c) { return evidence.keypoint_cost(skeleton, view(c.fit.pose)); };
+  const auto keypoint_cost = [&](const Candidate& c) {
+    return evidence.keypoint_cost(body.skeleton, view(c.fit.pose));
+  };
   const double worst = keypoint_cost(starts.front()) + kContradicted;
   std::erase_if(starts, [&](const Candidate& c) { return keypoint_cost(c) > worst; });
   std::vector<StartingPose> best;

@@ -79,6 +79,18 @@ std::array<Eigen::Matrix3d, 20> zero_from_rest(const RestPose& rest, const std::
 
 std::string text_of_sex(double sex) { return sex == 0 ? "m" : sex == 1 ? "f" : fmt::format("{:g}", sex); }
 
+std::map<std::string, std::string> facts_of(const MakeHumanAssets& assets, const Sliders& sliders) {
+  return {{"source", "MakeHuman (CC0)"},
+          {"source_sha256", assets.hash},
+          {kJointPlacesFact, kJointPlaces},
+          {"slider_gender", fmt::format("{:.6f}", sliders.gender)},
+          {"slider_age", fmt::format("{:.6f}", sliders.age)},
+          {"slider_muscle", fmt::format("{:.6f}", sliders.muscle)},
+          {"slider_weight", fmt::format("{:.6f}", sliders.weight)},
+          {"slider_height", fmt::format("{:.6f}", sliders.height)},
+          {"slider_proportions", fmt::format("{:.6f}", sliders.proportions)}};
+}
+
 }  // namespace
 
 Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenotype) {
@@ -131,15 +143,7 @@ Result<BodyModel> build_human(const MakeHumanData& data, const Phenotype& phenot
   body.name = fmt::format("human:age={:g},sex={},height={:.3f},weight={:.1f}", phenotype.age_years,
                           text_of_sex(phenotype.sex), body.height_m, body.weight_kg);
   if (phenotype.muscle) body.name += fmt::format(",muscle={:g}", *phenotype.muscle);
-  body.facts = {{"source", "MakeHuman (CC0)"},
-                {"source_sha256", assets.hash},
-                {kJointPlacesFact, kJointPlaces},
-                {"slider_gender", fmt::format("{:.6f}", sliders->gender)},
-                {"slider_age", fmt::format("{:.6f}", sliders->age)},
-                {"slider_muscle", fmt::format("{:.6f}", sliders->muscle)},
-                {"slider_weight", fmt::format("{:.6f}", sliders->weight)},
-                {"slider_height", fmt::format("{:.6f}", sliders->height)},
-                {"slider_proportions", fmt::format("{:.6f}", sliders->proportions)}};
+  body.facts = facts_of(assets, *sliders);
   return body;
 }
 

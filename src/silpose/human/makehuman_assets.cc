@@ -60,6 +60,30 @@ std::map<std::string, int> joint_from_bone() {
   return map;
 }
 
+struct AssetFile {
+  std::string where;        // for messages
+  const std::string& path;  // in the data's folder
+  const std::string& content;
+};
+
+// Reads a file into its part of the assets, if it has one. `rig`: the content of the file of bones.
+Result<void> parse_asset(const AssetFile& file, const std::string& rig, MakeHumanAssets& assets) {
+  Result<void> done;
+  if (file.path == "base.obj") {
+    Result<MakeHumanMesh> base = parse_makehuman_mesh(file.where, file.content);
+    base ? void(assets.base = std::move(*base)) : void(done = base.failure());
+  } else if (file.path == "weights.default.json") {
+    Result<SkinWeights> skin = parse_makehuman_weights(file.where, rig, file.content, joint_from_bone());
+    skin ? void(assets.skin = std::move(*skin)) : void(done = skin.failure());
+  } else if (file.path.starts_with("targets/")) {
+    const std::string name = file.path.substr(8, file.path.size() - 8 - std::string_view(".target.gz").size());
+    const Result<std::string> text = gunzip(file.where, file.content, kMaxTargetBytes);
+    Result<MakeHumanTarget> target = text ? parse_makehuman_target(file.where, *text) : text.failure();
+    target ? void(assets.targets.at(name) = std::move(*target)) : void(done = target.failure());
+  }
+  return done;
+}
+
 }  // namespace
 
 MakeHumanData::MakeHumanData() : impl_(std::make_unique<Impl>()) {}
@@ -109,26 +133,11 @@ Result<MakeHumanAssets> load_makehuman_assets(const std::filesystem::path& direc
   }
 
   for (const std::string& name : names) assets.targets[name];  // so that threads find each its own
-  const auto content_of = [&](const std::string& path) -> const std::string& {
-    return contents[std::lower_bound(paths.begin(), paths.end(), path) - paths.begin()];
-  };
+  const auto rig = std::ranges::lower_bound(paths, std::string("rig.default.json")) - paths.begin();
   parallel_for(paths.size(), 1, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      const std::string where = (directory / paths[i]).string();
-      Result<void> done;
-      if (paths[i] == "base.obj") {
-        Result<MakeHumanMesh> base = parse_makehuman_mesh(where, contents[i]);
-        base ? void(assets.base = std::move(*base)) : void(done = base.failure());
-      } else if (paths[i] == "weights.default.json") {
-        Result<SkinWeights> skin =
-            parse_makehuman_weights(where, content_of("rig.default.json"), contents[i], joint_from_bone());
-        skin ? void(assets.skin = std::move(*skin)) : void(done = skin.failure());
-      } else if (paths[i].starts_with("targets/")) {
-        const std::string name = paths[i].substr(8, paths[i].size() - 8 - std::string_view(".target.gz").size());
-        const Result<std::string> text = gunzip(where, contents[i], kMaxTargetBytes);
-        Result<MakeHumanTarget> target = text ? parse_makehuman_target(where, *text) : text.failure();
-        target ? void(assets.targets.at(name) = std::move(*target)) : void(done = target.failure());
-      }
+      const AssetFile file{(directory / paths[i]).string(), paths[i], contents[i]};
+      const Result<void> done = parse_asset(file, contents[static_cast<size_t>(rig)], assets);
       if (!done) failures[i] = done.error().message;
     }
   });

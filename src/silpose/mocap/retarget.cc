@@ -342,6 +342,14 @@ std::vector<double> solve_first(const Retargeter& retargeter, const Skeleton& sk
   return best;
 }
 
+// Moves all poses so that the lowest points [T] of all but one in twenty are above the floor. `height`: the DOF that
+// does.
+void stand_on_floor(std::vector<double> lowest, size_t height, std::vector<std::vector<double>>& poses) {
+  std::sort(lowest.begin(), lowest.end());
+  const double floor = lowest[(lowest.size() - 1) / 20];
+  for (std::vector<double>& pose : poses) pose[height] -= floor;
+}
+
 }  // namespace
 
 Result<Retargeted> retarget(const Clip& clip, const BodyModel& body, const RetargetOptions& options) {
@@ -399,10 +407,7 @@ Result<Retargeted> retarget(const Clip& clip, const BodyModel& body, const Retar
   }
   out.mean_residual_deg = to_degrees(sum / count);
 
-  std::vector<double> sorted = lowest;
-  std::sort(sorted.begin(), sorted.end());
-  const double floor = sorted[(sorted.size() - 1) / 20];
-  for (std::vector<double>& row : out.poses) row[retargeter.translation(1)] -= floor;
+  stand_on_floor(std::move(lowest), retargeter.translation(1), out.poses);
   return out;
 }
 
