@@ -218,13 +218,11 @@ TEST_P(BlackboardStreams, NobodySeesAPartOfABatch) {
   std::thread snapshots([&] {
     while (writing) {
       const auto readings = board_->snapshot(0, lookups).value();
-      if (!readings[0]) {
-        if (readings[1] || readings[2]) ++parts;
-        continue;
-      }
-      for (const auto& reading : readings) {
-        if (!reading || reading->time_ns != readings[0]->time_ns) ++parts;
-      }
+      const auto is_like_first = [&](const auto& reading) {
+        if (!reading || !readings[0]) return !reading && !readings[0];
+        return reading->time_ns == readings[0]->time_ns;
+      };
+      if (!std::ranges::all_of(readings, is_like_first)) ++parts;
     }
   });
   std::thread lists([&] {

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "silpose/base/folder_for_test.h"
 #include "silpose/base/rng.h"
 
 namespace silpose {
@@ -16,20 +17,14 @@ using Eigen::Vector3d;
 using testing::AllOf;
 using testing::HasSubstr;
 
-class Bvh : public testing::Test {
+class Bvh : public FolderTest {
  protected:
-  void SetUp() override {
-    path_ = std::filesystem::path(testing::TempDir()) /
-            (std::string("bvh_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".bvh");
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
-
   Result<Clip> read(const std::string& text) {
     std::ofstream(path_, std::ios::binary) << text;
     return read_bvh(path_);
   }
 
-  std::filesystem::path path_;
+  const std::filesystem::path path_ = folder_ / "clip.bvh";
 };
 
 // Two joints and an end site, one joint with its channels out of the usual order, tabs, blanks and CRLF.

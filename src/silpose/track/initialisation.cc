@@ -48,7 +48,7 @@ PosePrior prior_about(const BodyModel& body, const Eigen::VectorXd& pose) {
   return prior;
 }
 
-// Which of so many directions a pose faces: 0 for a rig without heading.
+// [guess] Which of so many directions a pose faces: 0 for a rig without heading.
 constexpr int kNumSectors = 8;
 int heading_sector(const RigProfile& profile, const Eigen::VectorXd& pose) {
   if (!profile.heading) return 0;

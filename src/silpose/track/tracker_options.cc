@@ -11,7 +11,7 @@
 namespace silpose {
 namespace {
 
-constexpr int kFewestVertices = 100;
+constexpr int kFewestVertices = 100;  // [guess] fewer have no hands and feet
 
 void check_filter(const FittedOptions& fitted) { fitted_option_table().check(fitted); }
 
