@@ -19,7 +19,6 @@ using testing::HasSubstr;
 
 class Bvh : public FolderTest {
  protected:
-
   Result<Clip> read(const std::string& text) {
     std::ofstream(path_, std::ios::binary) << text;
     return read_bvh(path_);
