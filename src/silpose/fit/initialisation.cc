@@ -36,8 +36,8 @@ constexpr double kContradicted = 20;  // [guess] by keypoints, more than the bes
 
 // Loosely about a candidate: joints by half their range, the tilt of what stands upright by 20 degrees; where the body
 // is, and which way it faces, is free.
-PosePrior prior_about(const BodyModel& body, const Eigen::VectorXd& pose) {
-  PosePrior prior{pose, Eigen::MatrixXd::Zero(pose.size(), pose.size())};
+GaussianPrior prior_about(const BodyModel& body, const Eigen::VectorXd& pose) {
+  GaussianPrior prior{pose, Eigen::MatrixXd::Zero(pose.size(), pose.size())};
   for (Eigen::Index d = 0; d < pose.size(); ++d) {
     const Dof& dof = body.skeleton.dofs()[static_cast<size_t>(d)];
     const bool is_tilt = dof.joint_idx == 0 && body.profile.up.has_value();
@@ -64,7 +64,7 @@ double faces_camera(const BodyModel& body, const PinholeCamera& camera, std::spa
 }
 
 struct Candidate {
-  PosePrior prior;
+  GaussianPrior prior;
   PoseFit fit;
   [[nodiscard]] double cost() const { return fit.cost(); }
 };

@@ -21,7 +21,7 @@ struct Point {
 };
 
 Point evaluate(const CoverageLikelihood& likelihood, const PosePrior& pose_prior, const CoverageEvidence& evidence,
-               const PosePrior& prior, Blur blur, Eigen::VectorXd pose, double rest_weight,
+               const GaussianPrior& prior, Blur blur, Eigen::VectorXd pose, double rest_weight,
                CoverageLikelihood::Scratch& scratch) {
   Point point;
   point.pose = std::move(pose);
@@ -60,7 +60,7 @@ void clamp_to_limits(const Skeleton& skeleton, Eigen::VectorXd& pose) {
 }
 
 PoseFit fit_pose(const CoverageLikelihood& likelihood, const PosePrior& pose_prior, const CoverageEvidence& evidence,
-                 const PosePrior& prior, const Eigen::VectorXd& start, std::span<const FitStage> stages,
+                 const GaussianPrior& prior, const Eigen::VectorXd& start, std::span<const FitStage> stages,
                  const PoseFitOptions& options, CoverageLikelihood::Scratch& scratch) {
   check(!stages.empty(), "fit_pose: no stage");
   const Skeleton& skeleton = likelihood.body().skeleton;

@@ -15,7 +15,7 @@
 namespace silpose {
 
 // cost(pose) = (pose - mean)' information (pose - mean). DOF of no information are free.
-struct PosePrior {
+struct GaussianPrior {
   Eigen::VectorXd mean;         // [D]
   Eigen::MatrixXd information;  // [D, D]
 };
@@ -41,7 +41,7 @@ struct PoseFitOptions {
 
 // From `start` [D], stage by stage. Errors: throws std::invalid_argument without a stage.
 PoseFit fit_pose(const CoverageLikelihood& likelihood, const PosePrior& pose_prior, const CoverageEvidence& evidence,
-                 const PosePrior& prior, const Eigen::VectorXd& start, std::span<const FitStage> stages,
+                 const GaussianPrior& prior, const Eigen::VectorXd& start, std::span<const FitStage> stages,
                  const PoseFitOptions& options, CoverageLikelihood::Scratch& scratch);
 
 // Clamps what is limited, and keeps the whole turns of what is not: unlike Skeleton::clamp, which wraps. [D]

@@ -23,7 +23,7 @@ class PoseFitTest : public ::testing::Test {
   static Eigen::VectorXd vector_of(const std::vector<double>& pose) {
     return Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose));
   }
-  PosePrior prior(const std::vector<double>& mean, double deviation) const {
+  GaussianPrior prior(const std::vector<double>& mean, double deviation) const {
     return {vector_of(mean), Eigen::MatrixXd::Identity(8, 8) / (deviation * deviation)};
   }
 

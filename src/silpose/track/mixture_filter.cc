@@ -21,7 +21,7 @@ constexpr double kCoastDecay_per_s = 3;  // unseen, a body is assumed to slow do
 constexpr FitStage kTrackingStages[] = {{Blur::k8, 4}, {Blur::k4, 3}, {Blur::k2, 3}};
 constexpr FitStage kJumpStages[] = {{Blur::k8, 2}, {Blur::k4, 3}, {Blur::k2, 3}};
 
-PosePrior prior_of(const GaussianComponent& component) {
+GaussianPrior prior_of(const GaussianComponent& component) {
   const Eigen::Index D = component.num_dofs();
   return {component.pose(), component.pose_covariance().ldlt().solve(Eigen::MatrixXd::Identity(D, D))};
 }
@@ -34,7 +34,7 @@ double log_determinant(const Eigen::MatrixXd& positive) {
 
 struct MixtureFilter::Child {
   GaussianComponent component;  // predicted, with the limb that jumped set free; then conditioned
-  PosePrior prior;
+  GaussianPrior prior;
   Eigen::VectorXd start;  // of the fit
   PoseFit fit;
   double log_weight = 0;  // before this step's evidence
