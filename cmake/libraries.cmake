@@ -13,7 +13,7 @@ silpose_find(OpenSSL COMPONENTS Crypto)
 silpose_find(meshoptimizer)
 silpose_find(hwy)
 
-# OpenCV's own CMake package comes with Debian's libopencv-dev, which drags in 40 more packages; the modules we use have
+# OpenCV's own CMake package comes with Debian's libopencv-dev, which depends on 40 more packages; the modules we use have
 # packages of their own, without it.
 set(SILPOSE_OPENCV_MODULES core imgproc imgcodecs videoio video dnn calib3d)
 find_package(OpenCV 4.5 QUIET COMPONENTS ${SILPOSE_OPENCV_MODULES})

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
+#include "apps/silpose/run_facts.h"
+
 namespace silpose::app {
-namespace {
-
-nlohmann::ordered_json figure(double mean, double std) { return {{"mean", mean}, {"std", std}}; }
-
-}  // namespace
 
 nlohmann::ordered_json facts_of(const BodyFit& fit) {
   nlohmann::ordered_json facts;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "apps/silpose/run_facts.h"
 #include "silpose/base/clock.h"
 #include "silpose/geometry/rigid3.h"
 #include "silpose/session/clip_camera.h"
@@ -11,8 +12,8 @@
 namespace silpose::app {
 namespace {
 
-nlohmann::ordered_json figure(const Estimated& value, double unit = 1) {
-  return {{"mean", unit * value.mean}, {"std", unit * value.deviation}};
+nlohmann::ordered_json figure_of(const Estimated& value, double unit = 1) {
+  return figure(unit * value.mean, unit * value.deviation);
 }
 
 std::string warning_of(const CameraEstimate& estimate, const FocalSource& source) {
@@ -47,10 +48,10 @@ Result<void> estimate_camera_of(ObservationSource& source, double body_height_m,
 }
 
 nlohmann::ordered_json facts_of(const CameraEstimate& estimate) {
-  return {{"focal_px", figure(estimate.focal_px)},
-          {"height_m", figure(estimate.height_m)},
-          {"tilt_deg", figure(estimate.tilt, to_degrees(1))},
-          {"roll_deg", figure(estimate.roll, to_degrees(1))},
+  return {{"focal_px", figure_of(estimate.focal_px)},
+          {"height_m", figure_of(estimate.height_m)},
+          {"tilt_deg", figure_of(estimate.tilt, to_degrees(1))},
+          {"roll_deg", figure_of(estimate.roll, to_degrees(1))},
           {"frames", estimate.num_frames},
           {"body_height_m", estimate.body_height_m}};
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sys/utsname.h>
 
+#include <cmath>
 #include <fstream>
 #include <thread>
 #include <utility>
@@ -26,6 +27,11 @@ std::string machine_name() {
   uname(&system);
   return fmt::format("{}, {} threads, {} {}", processor, std::thread::hardware_concurrency(), system.sysname,
                      system.release);
+}
+
+nlohmann::ordered_json figure(double mean, double std) {
+  if (std::isnan(mean)) return nullptr;
+  return {{"mean", mean}, {"std", std}};
 }
 
 nlohmann::ordered_json run_facts(const CommonOptions& common) {

@@ -17,6 +17,9 @@ namespace silpose::app {
 // version, command, seed, machine: how every run.json begins.
 nlohmann::ordered_json run_facts(const CommonOptions& common);
 
+// A mean and its standard deviation, {"mean", "std"}; null where the mean is NaN.
+nlohmann::ordered_json figure(double mean, double std);
+
 // "AMD EPYC 7B13, 2 threads, Linux 6.1.0": the processor and system that results were made on.
 std::string machine_name();
 

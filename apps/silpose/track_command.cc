@@ -99,7 +99,7 @@ Result<void> resume(Session& session, const CheckpointPlace& place, const TrackO
   }
   const int64_t num_frames = (*earlier)->num_frames;
   const Result<std::string> where = session.resume(std::move(**earlier));
-  if (!where) return failed(where.error());
+  if (!where) return Console::interrupted() ? error("interrupted; --resume continues") : failed(where.error());
   console.message(fmt::format("{}: {} frames are done; resuming {}", place.folder.string(), num_frames, *where));
   return {};
 }

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "apps/silpose/body_fit_facts.h"
 #include "apps/silpose/clip_camera_choice.h"
 #include "apps/silpose/run_facts.h"
@@ -13,11 +11,6 @@
 
 namespace silpose::app {
 namespace {
-
-nlohmann::ordered_json figure(double mean, double std) {
-  if (std::isnan(mean)) return nullptr;
-  return {{"mean", mean}, {"std", std}};
-}
 
 double frames_per_second(const SessionResult& tracked) {
   return static_cast<double>(tracked.num_frames) / tracked.loop_s;

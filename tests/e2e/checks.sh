@@ -1,4 +1,4 @@
-# Sourced by the end-to-end tests: PROGRAM FOLDER on the command line; creates FOLDER afresh and changes to it.
+# Sourced by the end-to-end tests: PROGRAM FOLDER on the command line; empties FOLDER and changes to it.
 set -euo pipefail
 silpose=$1
 rm -rf "$2"

@@ -1,4 +1,4 @@
-# Experiments: listed, run, stopped and taken up again, refused where something else lies.
+# Experiments: listed, run, stopped and resumed, refused where something else lies.
 source "$(dirname "$0")/checks.sh"
 
 "$silpose" experiment --list >list.txt

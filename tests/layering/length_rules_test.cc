@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include "source_tree.h"
 
 namespace silpose {
 namespace {
@@ -12,7 +12,6 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-namespace fs = std::filesystem;
 
 const std::string kProject = SILPOSE_SOURCE_DIR;
 
@@ -20,26 +19,13 @@ TEST(Project, HasShortFilesAndFunctions) {
   EXPECT_THAT(length_violations(kProject, {"src", "apps", "bench"}), IsEmpty());
 }
 
-class LengthRules : public testing::Test {
+class LengthRules : public SourceTree {
  protected:
-  void SetUp() override {
-    root_ = fs::path(testing::TempDir()) /
-            (std::string("length_rules_") + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(root_);
-  }
-  void TearDown() override { fs::remove_all(root_); }
-
-  void write(const fs::path& file, const std::string& text) {
-    fs::create_directories((root_ / file).parent_path());
-    std::ofstream(root_ / file) << text;
-  }
   static std::string repeated(const std::string& line, int count) {
     std::string text;
     for (int i = 0; i < count; ++i) text += line;
     return text;
   }
-
-  fs::path root_;
 };
 
 TEST_F(LengthRules, CountsAFunctionFromItsHeadToItsBrace) {

@@ -74,7 +74,7 @@ TEST(SvgPlot, LinesBreakWhereNothingIs) {
   const std::string svg = svg_from_plot(plot);
   EXPECT_TRUE(is_well_formed(svg));
   EXPECT_EQ(count(svg, "M70.0"), 1u);
-  EXPECT_EQ(count(svg, " M"), 1u);  // taken up again once
+  EXPECT_EQ(count(svg, " M"), 1u);  // resumed once
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
 }
 

@@ -255,9 +255,8 @@ Result<std::optional<RunResult>> TrackingRuns::run(const RunSettings& settings, 
     case RunKind::kTrack:
       return track_sequence(settings, seed, go_on);
     case RunKind::kTrackClip:
-      return track_recorded(settings, seed, go_on);
     case RunKind::kKeypoints:
-      return score_network(settings, go_on);
+      return run_recorded(settings, seed, go_on);
   }
   return error("no such kind of run");
 }
@@ -321,33 +320,32 @@ Result<std::optional<TrackingRuns::RecordedClip>> TrackingRuns::read_clip(const 
   return std::optional(std::move(clip));
 }
 
-Result<std::optional<RunResult>> TrackingRuns::track_recorded(const RunSettings& settings, uint64_t seed,
-                                                              const std::function<bool()>& go_on) {
+Result<std::optional<RunResult>> TrackingRuns::run_recorded(const RunSettings& settings, uint64_t seed,
+                                                            const std::function<bool()>& go_on) {
   const Stopwatch all;
   const auto clip = read_clip(settings, go_on);
   if (!clip) return clip.failure();
   if (!clip->has_value()) return std::optional<RunResult>();
   const RecordedClip& recorded = **clip;
-  Result<TrackerOptions> options = choose_tracker(settings, recorded.body, recorded.cameras, seed);
-  if (!options) return options.failure();
-  auto result = track_and_score(*std::move(options), settings.fit_body, recorded.instants, go_on,
-                                [&](const BodyModel& tracked_body, std::span<const StepReport> reports) {
-                                  return score_clip(recorded.truth, tracked_body, recorded.cameras, reports);
-                                });
+  auto result = settings.run_kind() == RunKind::kKeypoints ? score_network(recorded)
+                                                           : track_recorded(settings, recorded, seed, go_on);
   if (result && result->has_value()) (*result)->wall_s = all.seconds();
   return result;
 }
 
-Result<std::optional<RunResult>> TrackingRuns::score_network(const RunSettings& settings,
-                                                             const std::function<bool()>& go_on) {
-  const Stopwatch all;
-  const auto clip = read_clip(settings, go_on);
-  if (!clip) return clip.failure();
-  if (!clip->has_value()) return std::optional<RunResult>();
-  const RecordedClip& recorded = **clip;
+Result<std::optional<RunResult>> TrackingRuns::track_recorded(const RunSettings& settings, const RecordedClip& recorded,
+                                                              uint64_t seed, const std::function<bool()>& go_on) {
+  Result<TrackerOptions> options = choose_tracker(settings, recorded.body, recorded.cameras, seed);
+  if (!options) return options.failure();
+  return track_and_score(*std::move(options), settings.fit_body, recorded.instants, go_on,
+                         [&](const BodyModel& tracked_body, std::span<const StepReport> reports) {
+                           return score_clip(recorded.truth, tracked_body, recorded.cameras, reports);
+                         });
+}
+
+Result<std::optional<RunResult>> TrackingRuns::score_network(const RecordedClip& recorded) {
   Result<RunResult> scored = score_keypoints(recorded.truth, *recorded.body, recorded.cameras[0], recorded.instants);
   if (!scored) return scored.failure();
-  scored->wall_s = all.seconds();
   return std::optional<RunResult>(*std::move(scored));
 }
 

@@ -59,10 +59,12 @@ class TrackingRuns {
     std::vector<ClipInstant> instants;
   };
   using Outcome = Result<std::optional<RunResult>>;
-  // One function per kind of run.
+  // By kind of run.
   Outcome track_sequence(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
-  Outcome track_recorded(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
-  Outcome score_network(const RunSettings& settings, const std::function<bool()>& go_on);
+  Outcome run_recorded(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
+  static Outcome track_recorded(const RunSettings& settings, const RecordedClip& recorded, uint64_t seed,
+                                const std::function<bool()>& go_on);
+  static Outcome score_network(const RecordedClip& recorded);
   Result<std::optional<RecordedClip>> read_clip(const RunSettings& settings, const std::function<bool()>& go_on);
   Result<const Seen*> see(const RunSettings& settings, uint64_t seed);
   Result<std::shared_ptr<const BodyModel>> body(const std::string& model);

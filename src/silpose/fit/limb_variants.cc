@@ -15,20 +15,6 @@ void exchange(std::span<double> pose, const Limb& a, const Limb& b) {
   }
 }
 
-std::vector<std::vector<double>> exchanged_limbs(const RigProfile& profile, std::span<const double> pose) {
-  const std::vector<Limb>& limbs = profile.limbs;
-  std::vector<std::vector<double>> variants;
-  std::vector<double> all(pose.begin(), pose.end());
-  for (const auto& [a, b] : profile.limb_pairs) {
-    std::vector<double> one(pose.begin(), pose.end());
-    exchange(one, limbs[a], limbs[b]);
-    exchange(all, limbs[a], limbs[b]);
-    variants.push_back(std::move(one));
-  }
-  if (variants.size() > 1) variants.push_back(std::move(all));
-  return variants;
-}
-
 std::vector<std::vector<double>> reflected_limb(const BodyModel& body, const Limb& limb, std::span<const double> pose,
                                                 const Eigen::Vector3d& camera_centre) {
   constexpr double kReached = 0.05;  // [guess] metres
@@ -124,7 +110,7 @@ std::vector<double> mirrored_in_depth(const BodyModel& body, std::span<const dou
     const bool stays = std::abs(axes.col(static_cast<Eigen::Index>(d)).dot(across)) >= 0.5;
     if (!paired[d] && !skeleton.dofs()[d].is_translation && !stays) mirrored[d] = -mirrored[d];
   }
-  // From the body's own mirror plane to the one through the root that faces the camera_centre.
+  // From the body's own mirror plane to the one through the root that faces the camera.
   const Eigen::Vector3d towards = camera_centre - root;
   double& heading = mirrored[static_cast<size_t>(*turn)];
   heading =

@@ -16,10 +16,6 @@ namespace silpose {
 // The angles of two alike limbs, exchanged in a pose [D].
 void exchange(std::span<double> pose, const Limb& a, const Limb& b);
 
-// The pose [D] with the angles of each pair of alike limbs exchanged, one pair at a time and then all at once. From the
-// side a silhouette hardly distinguishes the legs.
-std::vector<std::vector<double>> exchanged_limbs(const RigProfile& profile, std::span<const double> pose);
-
 // The pose with a limb's segments reflected in the planes that face `camera_centre`: first segment, the others, all of
 // them. A segment ends where the next joint, or the end point, is. Only DOF of the limb change; a reflection that the
 // limits do not allow to within 5 cm is left out.

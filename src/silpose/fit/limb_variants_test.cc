@@ -16,27 +16,25 @@ namespace {
 
 using ::testing::SizeIs;
 
-TEST(ExchangedLimbs, SwapsLegsArmsAndBoth) {
+// The angles of alike limbs change places; all others stay.
+TEST(Exchange, SwapsTheAnglesOfTwoLimbs) {
   const Skeleton skeleton = human_skeleton(std::vector<Eigen::Vector3d>(20, Eigen::Vector3d::Zero()));
+  const RigProfile profile = human_profile(skeleton);
+  ASSERT_THAT(profile.limb_pairs, SizeIs(2));
   std::vector<double> pose(37, 0.0);
   const auto at = [&](const char* name) { return static_cast<size_t>(*skeleton.find_dof(name)); };
   pose[at("right_thigh_rx")] = 0.5;
   pose[at("left_hand_rz")] = 0.2;
   pose[at("thorax_ry")] = 0.1;
-  const auto variants = exchanged_limbs(human_profile(skeleton), pose);
-  ASSERT_THAT(variants, SizeIs(3));
-  EXPECT_EQ(variants[0][at("left_thigh_rx")], 0.5);
-  EXPECT_EQ(variants[0][at("right_thigh_rx")], 0);
-  EXPECT_EQ(variants[0][at("left_hand_rz")], 0.2);
-  EXPECT_EQ(variants[1][at("right_hand_rz")], 0.2);
-  EXPECT_EQ(variants[1][at("right_thigh_rx")], 0.5);
-  EXPECT_EQ(variants[2][at("left_thigh_rx")], 0.5);
-  EXPECT_EQ(variants[2][at("right_hand_rz")], 0.2);
-  for (const auto& variant : variants) EXPECT_EQ(variant[at("thorax_ry")], 0.1);
-}
-
-TEST(ExchangedLimbs, ABodyWithoutPairsHasNone) {
-  EXPECT_TRUE(exchanged_limbs(make_test_body().profile, std::vector<double>(8, 0.0)).empty());
+  std::vector<double> legs = pose, arms = pose;
+  exchange(legs, profile.limbs[profile.limb_pairs[0].right], profile.limbs[profile.limb_pairs[0].left]);
+  exchange(arms, profile.limbs[profile.limb_pairs[1].right], profile.limbs[profile.limb_pairs[1].left]);
+  EXPECT_EQ(legs[at("left_thigh_rx")], 0.5);
+  EXPECT_EQ(legs[at("right_thigh_rx")], 0);
+  EXPECT_EQ(legs[at("left_hand_rz")], 0.2);
+  EXPECT_EQ(arms[at("right_hand_rz")], 0.2);
+  EXPECT_EQ(arms[at("right_thigh_rx")], 0.5);
+  for (const auto& variant : {legs, arms}) EXPECT_EQ(variant[at("thorax_ry")], 0.1);
 }
 
 const BodyModel& human() { return *human_for_test(); }

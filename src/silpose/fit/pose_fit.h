@@ -1,5 +1,5 @@
 // fit_pose(): from a pose to the nearest best one: Gauss-Newton on the coverage likelihood, from wide blur to narrow,
-// under a Gaussian prior and what makes a pose plausible.
+// under a Gaussian prior and the pose prior (pose_prior.h).
 // Based on: Levenberg-Marquardt (references.bib: nocedal2006); the measurement step of an iterated extended Kalman
 // filter (bell1993).
 // Threads: functions without state; one Scratch per thread.
@@ -28,8 +28,8 @@ struct FitStage {
 struct PoseFit {
   Eigen::VectorXd pose;         // [D] within the limits
   double energy = 0;            // E at the last stage's blur
-  double prior_cost = 0;        // of the prior and of implausibility
-  Eigen::MatrixXd information;  // [D, D] of the silhouette, the prior and pose_prior
+  double prior_cost = 0;        // of the Gaussian prior and the pose prior
+  Eigen::MatrixXd information;  // [D, D] of the silhouette, the Gaussian prior and the pose prior
   [[nodiscard]] double cost() const { return energy + prior_cost; }
 };
 

@@ -62,6 +62,7 @@ bool ClipPasses::pass(size_t from, size_t to, const std::function<bool(double sh
 }
 
 void ClipPasses::begin_pass() {
+  if (tracker_) return;  // stopped within the pass
   TrackerOptions options = options_of_pass(options_);
   if (!last_pose_.empty()) options.initial_pose = last_pose_;
   tracker_.emplace(options);

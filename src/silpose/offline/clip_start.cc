@@ -67,6 +67,7 @@ std::vector<size_t> spaced_out(const JudgedClip& clip, const std::vector<size_t>
 // The one of `starts` whose observations a pose explains best.
 size_t best_explained(const TrackerOptions& options, const JudgedClip& clip, const std::vector<size_t>& starts,
                       const std::function<bool()>& proceed) {
+  if (starts.size() == 1) return starts.front();
   // Passes start from scratch, so a coarse mesh will do to choose.
   const auto body = level_of_detail(options.body, options_of_pass(options).lod_vertices);
   const CoverageLikelihood likelihood(body, options.cameras);

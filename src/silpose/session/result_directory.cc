@@ -1,5 +1,6 @@
 #include "silpose/session/result_directory.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>

@@ -38,6 +38,8 @@ class Session::Impl {
     is_whole_ = result_.used.smooths() || options_.fit_body;
     check(!is_whole_ || !source.video().is_live(), "Session: smoothing and fitting a body need a recorded clip");
     check(!options_.checkpoint || !source.video().is_live(), "Session: a live camera cannot be resumed");
+    check(!options_.checkpoint || std::ranges::count(options_.sinks, options_.checkpoint->masks) == 1,
+          "Session: the masks of the checkpoint are not among the sinks");
     if (is_whole_ && options_.checkpoint) options_.checkpoint->masks->keep_confidence();
     now_.seconds.background = source_.learning_s();
   }
@@ -54,13 +56,17 @@ class Session::Impl {
 
   Result<void> begin_at(int64_t frame_idx);
   Result<void> read_over_done(const Checkpoint& earlier, int64_t& last_idx);
+  Result<void> give_reports_again();
   [[nodiscard]] std::string place_of_resume(int64_t last_frame_idx) const;
   Result<void> finish_writing();
   Result<void> save(std::string tracker);
-  [[nodiscard]] bool should_save() const { return stopped_ || since_save_.seconds() > save_interval_s_; }
+  [[nodiscard]] bool should_save() const {
+    return options_.checkpoint && (stopped_ || since_save_.seconds() > save_interval_s_);
+  }
   Result<std::optional<Instant>> read(std::string_view progress);
   Result<void> record(StepReport report);
 
+  Result<void> advance();
   Result<void> track_next();
   Result<void> end_online();
 
@@ -79,8 +85,9 @@ class Session::Impl {
   Checkpoint now_;
   std::optional<Tracker> tracker_;  // frame by frame
   std::vector<ClipInstant> clip_;   // tracked as a whole
-  bool is_whole_ = false, is_resumed_ = false, stopped_ = false, ended_ = false;
-  size_t num_given_ = 0;  // reports given by next()
+  bool is_whole_ = false, is_resumed_ = false, stopped_ = false, ended_ = false, is_finished_ = false;
+  std::optional<Error> failed_;  // reported again by every later call
+  size_t num_given_ = 0;         // reports given by next()
   Result<void> saved_;
   Stopwatch wall_, since_save_, whole_clip_;
   double earlier_loop_s_ = 0, save_interval_s_ = kLeastInterval_s;
@@ -134,10 +141,17 @@ Result<std::string> Session::Impl::resume(Checkpoint earlier) {
   now_.seconds.background += learning_s;
   earlier_loop_s_ = now_.loop_s;
   is_resumed_ = true;
-  for (const StepReport& report : now_.reports) {
-    if (Result<void> given = sinks_.add_report(report); !given) return given.failure();
+  if (!is_whole_) {
+    if (Result<void> given = give_reports_again(); !given) return given.failure();
   }
   return place_of_resume(last_idx);
+}
+
+Result<void> Session::Impl::give_reports_again() {
+  for (const StepReport& report : now_.reports) {
+    if (Result<void> given = sinks_.add_report(report); !given) return given;
+  }
+  return {};
 }
 
 std::string Session::Impl::place_of_resume(int64_t last_frame_idx) const {
@@ -190,8 +204,8 @@ Result<std::optional<Instant>> Session::Impl::read(std::string_view progress) {
 
 Result<void> Session::Impl::record(StepReport report) {
   now_.seconds.add(report.seconds);
-  report.observed.clear();
   Result<void> given = sinks_.add_report(report);
+  report.observed.clear();  // kept, they would bound how long a clip may be
   now_.reports.push_back(std::move(report));
   return given;
 }
@@ -251,7 +265,7 @@ Result<void> Session::Impl::track_whole() {
   if (options_.fit_body) {
     if (Result<void> fitted = fit_body_to_clip(); !fitted || stopped_) return fitted;
   }
-  return now_.reports.empty() ? track_instants() : Result<void>();
+  return now_.reports.empty() ? track_instants() : give_reports_again();
 }
 
 // For tracking the clip as a whole; `saved_` has the result of saving.
@@ -311,7 +325,7 @@ Result<void> Session::Impl::fit_body_to_clip() {
     return {};
   }
   options_.tracker = options_after_fit(std::move(options_.tracker), *fit);
-  result_.used.size_deviation = options_.tracker.size_deviation;
+  result_.used = options_.tracker;
   result_.body = fit->body;
   for (const auto& sink : sinks_.sinks()) sink->set_body(fit->body);
   result_.body_fit = std::move(fit);
@@ -338,20 +352,30 @@ Result<void> Session::Impl::give_tracked_frames() {
   return {};
 }
 
+// Tracks the next frame, or the whole clip. Nothing is done after a failure.
+Result<void> Session::Impl::advance() {
+  if (failed_) return *failed_;
+  Result<void> tracked = is_whole_ ? track_whole() : track_next();
+  if (!tracked) {
+    failed_ = tracked.error();
+    (void)sinks_.finish();  // they receive the frames before; the first failure is the one that is reported
+  }
+  return tracked;
+}
+
 Result<std::optional<StepReport>> Session::Impl::next() {
-  if (num_given_ == now_.reports.size() && !ended_) {
-    if (Result<void> tracked = is_whole_ ? track_whole() : track_next(); !tracked) {
-      ended_ = true;
-      return tracked.failure();
-    }
+  if (failed_ || (num_given_ == now_.reports.size() && !ended_)) {
+    if (Result<void> tracked = advance(); !tracked) return tracked.failure();
   }
   if (num_given_ == now_.reports.size()) return std::optional<StepReport>();
   return std::optional<StepReport>(now_.reports[num_given_++]);
 }
 
 Result<SessionResult> Session::Impl::finish() {
-  while (!ended_) {
-    if (Result<void> tracked = is_whole_ ? track_whole() : track_next(); !tracked) return tracked.failure();
+  check(!is_finished_, "Session: finished already");
+  is_finished_ = true;
+  while (failed_ || !ended_) {
+    if (Result<void> tracked = advance(); !tracked) return tracked.failure();
   }
   if ((is_whole_ || is_resumed_) && !stopped_ && !now_.reports.empty() && sinks_.needs_tracked_frames()) {
     if (Result<void> given = give_tracked_frames(); !given) return given.failure();

@@ -60,7 +60,8 @@ struct SessionResult {
 class Session {
  public:
   // `source` must outlive the session, and have given no instant. Errors: throws std::invalid_argument as
-  // TrackerOptions::check(); fit_body or smoothing with a live source.
+  // TrackerOptions::check(); fit_body, smoothing or a checkpoint with a live source; a checkpoint whose masks are not
+  // among the sinks.
   Session(ObservationSource& source, SessionOptions options);
   ~Session();
   Session(const Session&) = delete;
@@ -68,16 +69,18 @@ class Session {
 
   // Restores what an earlier session saved, which read_checkpoint() gave, and reads over the frames that are done.
   // Returns where it resumes, for the user: "after frame 41", "in the pass over the whole clip", ...
-  // Errors: those of the source; another clip; masks that are gone. REQUIRES: before next();
-  // SessionOptions::checkpoint.
+  // Errors: those of the source; another clip; masks that are gone; interrupted by the progress sink. REQUIRES: before
+  // next(); SessionOptions::checkpoint.
   Result<std::string> resume(Checkpoint earlier);
 
   // The report of the next frame, in order and from the first frame of the clip on, whether resumed or not. nullopt at
   // the end, or where the progress sink asked to stop. Where the clip is tracked as a whole the first call does it.
-  // Errors: those of the source, the sinks and the checkpoint.
+  // Reports have no StepReport::observed. Errors: those of the source, the sinks and the checkpoint; again at every
+  // later call.
   Result<std::optional<StepReport>> next();
 
-  // Tracks what is left, gives sinks the frames that they need and finishes them. Errors: as next().
+  // Tracks what is left, gives sinks the frames that they need and finishes them. Errors: as next(). REQUIRES: called
+  // once, last.
   Result<SessionResult> finish();
 
  private:

@@ -2,6 +2,8 @@
 // of a source that counts its passes and may fail. Threads: one.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -43,7 +45,7 @@ inline PinholeCamera tube_camera(int number) {
 }
 
 struct PassCounts {
-  int opened = 0, images = 0;  // passes begun, images read in all of them
+  int images = 0;  // read, in all passes
 };
 
 class TubeSource : public FrameSource {
@@ -58,7 +60,6 @@ class TubeSource : public FrameSource {
 
   [[nodiscard]] const std::string& name() const override { return name_; }
   Result<std::optional<TimedImage>> next() override {
-    if (next_ == 0) ++counts_->opened;
     if (next_ == options_.fails_at) return error("{}: frame {} is damaged", name_, next_);
     if (next_ == options_.num_frames) return std::optional<TimedImage>();
     ++counts_->images;

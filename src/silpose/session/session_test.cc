@@ -226,7 +226,10 @@ TEST_F(SessionTest, ASourceThatFailsInTheMiddleEndsItAfterTheFramesBefore) {
   const auto failed = session.next();
   ASSERT_FALSE(failed.ok());
   EXPECT_EQ(failed.error().message, "tube: frame 6 is damaged");
-  EXPECT_FALSE(session.next().value().has_value()) << "it is over";
+  EXPECT_EQ(session.next().error().message, "tube: frame 6 is damaged") << "it is over";
+  EXPECT_EQ(session.finish().error().message, "tube: frame 6 is damaged");
+  EXPECT_EQ(sink_->observed, numbers(6));
+  EXPECT_FALSE(sink_->is_finished);
 }
 
 TEST_F(SessionTest, TwoCamerasOfWhichOneEndsAreTrackedAsLongAsBothSee) {
@@ -234,6 +237,7 @@ TEST_F(SessionTest, TwoCamerasOfWhichOneEndsAreTrackedAsLongAsBothSee) {
   Session session(*source, options(2));
   const SessionResult result = session.finish().value();
   EXPECT_EQ(result.num_frames, 7);
+  ASSERT_EQ(result.recording.steps.size(), 7u);
   EXPECT_EQ(sink_->num_cameras, 2u);
   for (const RecordedStep& step : result.recording.steps) {
     EXPECT_NEAR(step.pose[2], 0, 0.02) << "the second camera sees how far away it is";
@@ -288,6 +292,7 @@ TEST_F(SessionTest, ABoardReceivesTheRecording) {
   const SessionResult result = Session(*source, std::move(recorded)).finish().value();
   const TrackRecording read = read_recording(*board).value();
   expect_same(result.recording, read);
+  EXPECT_EQ(board->count("tracker/observed/front").value(), 12);
   EXPECT_EQ(read.cameras, result.recording.cameras);
   EXPECT_EQ(read.skeleton, result.recording.skeleton);
   for (size_t t = 0; t < read.steps.size(); ++t) EXPECT_EQ(read.steps[t].trust, result.recording.steps[t].trust);

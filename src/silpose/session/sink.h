@@ -27,7 +27,7 @@ class SessionSink {
   }
 
   // The next report: of a clip that is tracked as a whole after all of its frames were observed. A resumed session
-  // gives those of its earlier part again.
+  // gives those of its earlier part again, without StepReport::observed.
   virtual Result<void> add_report(const StepReport& /*report*/) { return {}; }
 
   // The next frame with its report. A clip that is tracked as a whole, or resumed, is read once more for it.

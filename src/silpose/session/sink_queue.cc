@@ -22,8 +22,10 @@ Result<void> SinkQueue::add_observed(std::shared_ptr<const Frame> frame,
   });
 }
 
-Result<void> SinkQueue::add_report(const StepReport& report) {
-  return give([report](SessionSink& sink) { return sink.add_report(report); });
+Result<void> SinkQueue::add_report(StepReport report) {
+  return give([report = std::make_shared<const StepReport>(std::move(report))](SessionSink& sink) {
+    return sink.add_report(*report);
+  });
 }
 
 Result<void> SinkQueue::add_tracked(std::shared_ptr<const Frame> frame, const StepReport& report) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "silpose/base/result.h"
@@ -20,7 +21,7 @@ class SinkQueue {
   // Errors of all: what a sink failed with earlier.
   Result<void> add_observed(std::shared_ptr<const Frame> frame,
                             std::shared_ptr<const std::vector<Observation>> observations);
-  Result<void> add_report(const StepReport& report);
+  Result<void> add_report(StepReport report);
   Result<void> add_tracked(std::shared_ptr<const Frame> frame, const StepReport& report);
   // Until all calls so far are done. Errors: as the others.
   Result<void> finish() { return calls_.finish(); }
