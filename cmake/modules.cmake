@@ -45,6 +45,13 @@ if(SILPOSE_FUZZ)
   target_compile_options(silpose_build_options INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 
+# What unit tests are compiled with: optimised less, because they are most of the compiler's work and little of the time
+# that the tests take.
+add_library(silpose_test_options INTERFACE)
+target_compile_options(silpose_test_options INTERFACE $<$<CONFIG:Release>:-O1>)
+
+include(${CMAKE_CURRENT_LIST_DIR}/precompiled_headers.cmake)
+
 # silpose_timeout(SECONDS OUT): a test's time limit. Sanitizers slow programs down by 2 to 15 times (their manuals).
 function(silpose_timeout SECONDS OUT)
   if(SILPOSE_SANITIZE)
@@ -93,6 +100,7 @@ function(silpose_module NAME)
                         PRIVATE ${arg_LINK_PRIVATE} $<BUILD_INTERFACE:silpose_build_options>)
   set_target_properties(silpose_${NAME} PROPERTIES POSITION_INDEPENDENT_CODE ON EXPORT_NAME ${NAME})
   target_compile_features(silpose_${NAME} PUBLIC cxx_std_20)
+  silpose_reuse_precompiled(silpose_${NAME} silpose_precompiled)
   if(SILPOSE_INSTALL)
     install(TARGETS silpose_${NAME} EXPORT silposeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
             FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
@@ -101,8 +109,9 @@ function(silpose_module NAME)
   if(tests AND SILPOSE_BUILD_TESTS)
     list(TRANSFORM arg_TEST_DEPENDS PREPEND silpose_)
     add_executable(${NAME}_test ${tests})
-    target_link_libraries(${NAME}_test PRIVATE silpose_${NAME} ${arg_TEST_DEPENDS} silpose_build_options GTest::gmock GTest::gtest GTest::gtest_main)
+    target_link_libraries(${NAME}_test PRIVATE silpose_${NAME} ${arg_TEST_DEPENDS} silpose_build_options silpose_test_options GTest::gmock GTest::gtest GTest::gtest_main)
     target_compile_definitions(${NAME}_test PRIVATE SILPOSE_DATA_DIR="${SILPOSE_DATA_DIR}")
+    silpose_reuse_precompiled(${NAME}_test silpose_precompiled_tests)
     set_target_properties(${NAME}_test PROPERTIES RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/tests)
     silpose_timeout(300 timeout)
     add_test(NAME ${NAME} COMMAND ${NAME}_test WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR})

@@ -3,6 +3,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <nlohmann/json.hpp>
 
@@ -187,14 +188,14 @@ Result<std::string> gunzip(const std::string& name, std::string_view bytes, size
   stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
   stream.avail_in = static_cast<uInt>(bytes.size());
   std::string text;
+  std::array<char, 1 << 16> chunk;  // [definition]
   int status = Z_OK;
   while (status == Z_OK && text.size() < max_bytes) {
-    const size_t done = text.size();
-    text.resize(std::min(max_bytes, std::max<size_t>(4 * bytes.size(), 2 * done) + 64));
-    stream.next_out = reinterpret_cast<Bytef*>(text.data() + done);
-    stream.avail_out = static_cast<uInt>(text.size() - done);
+    const size_t room = std::min(chunk.size(), max_bytes - text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(chunk.data());
+    stream.avail_out = static_cast<uInt>(room);
     status = inflate(&stream, Z_NO_FLUSH);
-    text.resize(text.size() - stream.avail_out);
+    text.append(chunk.data(), room - stream.avail_out);
   }
   inflateEnd(&stream);
   if (status != Z_STREAM_END) return error("{}: damaged gzip file", name);
