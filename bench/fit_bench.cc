@@ -37,7 +37,7 @@ std::vector<Case> make_cases(const CoverageLikelihood& likelihood) {
     }
     Observation observation;
     observation.mask = render_silhouette(body, likelihood.cameras()[0], truth);
-    cases.push_back({likelihood.prepare(std::vector{observation}, kBlur, kBlur), std::move(pose)});
+    cases.push_back({likelihood.evidence_of(std::vector{observation}, kBlur, kBlur), std::move(pose)});
   }
   return cases;
 }

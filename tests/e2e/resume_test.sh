@@ -139,7 +139,7 @@ truncate -s -100 kept.partial/checkpoint.bin
 damaged 'checkpoint.bin: truncated; without --resume'
 cp whole.bin kept.partial/checkpoint.bin
 printf '\x07' | dd of=kept.partial/checkpoint.bin bs=1 seek=8 conv=notrunc status=none
-damaged 'checkpoint of silpose track of version 7, not 5'
+damaged 'checkpoint of silpose track of version 7, not 6'
 cp whole.bin kept.partial/checkpoint.bin
 printf 'x' | dd of=kept.partial/checkpoint.bin bs=1 seek=500 conv=notrunc status=none
 damaged 'damaged'

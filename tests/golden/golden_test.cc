@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -85,8 +86,8 @@ TEST(Golden, PixelsOfSilhouettes) {
 // Each pose against the silhouette of the next one: far from a fit, where all terms count.
 TEST(Golden, LikelihoodsOfPoses) {
   const auto body = human_for_test(kTrackingLevel);
-  const auto renderer = std::make_shared<const BatchRenderer>(body, scene().cameras[0]);
-  const SilhouetteLikelihood counts({renderer}, {});
+  const SilhouetteLikelihood counts({make_cpu_backend(body, scene().cameras[0])},
+                                    std::make_shared<AreaMetric>(AreaMetric::Unit::kPixels), {});
   const CoverageLikelihood coverage(body, scene().cameras);
   CoverageLikelihood::Scratch scratch(coverage);
   Numbers numbers;
@@ -96,8 +97,8 @@ TEST(Golden, LikelihoodsOfPoses) {
     StateBatch state(1, static_cast<Eigen::Index>(pose.size()));
     state.row(0) = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), state.cols());
     double log_likelihood = 0;
-    counts.log_likelihood(counts.prepare({&next, 1}), state, {&log_likelihood, 1});
-    const double energy = coverage.energy(coverage.prepare({&next, 1}), Blur::k8, pose, scratch);
+    counts.add_log_likelihood(*counts.prepare({&next, 1}), state, {&log_likelihood, 1});
+    const double energy = coverage.energy(coverage.evidence_of({&next, 1}), Blur::k8, pose, scratch);
     numbers.emplace_back(fmt::format("pixel_count_{}", t), log_likelihood);
     numbers.emplace_back(fmt::format("log_energy_{}", t), std::log(energy));
   }

@@ -27,7 +27,7 @@ FilterReport AnnealedFilter::step(const Propagate& propagate, const Diffuse& dif
                                   const LogLikelihood& log_likelihood, const Regenerate& regenerate) {
   FilterReport report;
   const uint64_t step = now_.step++;
-  now_.particles.resample(*resampler_, regenerate, options_.seed, stream_of(step), report);
+  now_.particles.resample(*resampler_, regenerate, inherit_, options_.seed, stream_of(step), report);
   propagate(now_.particles.states, stream_of(step));
   run_layers(step, diffuse, log_likelihood, report);
   return report;
@@ -47,18 +47,22 @@ void AnnealedFilter::run_layers(uint64_t step, const Diffuse& diffuse, const Log
     if (layer + 1 == options_.num_layers) return;
 
     const uint64_t stream = stream_of(step, layer + 1);
-    const Eigen::RowVectorXd best = now_.particles.states.row(mode_index(log_weights));
+    const auto best_idx = mode_index(log_weights);
+    const Eigen::RowVectorXd best = now_.particles.states.row(best_idx);
     const std::vector<double> deviation = noise_deviation(layer);
-    now_.particles.states = recombine(stream);
+    std::vector<int> ancestors;
+    now_.particles.states = recombine(stream, ancestors);
     diffuse(now_.particles.states, deviation, stream);
     now_.particles.states.row(0) = best;
+    ancestors.front() = static_cast<int>(best_idx);
+    if (inherit_) inherit_(ancestors);
   }
 }
 
-StateBatch AnnealedFilter::recombine(uint64_t stream) const {
+StateBatch AnnealedFilter::recombine(uint64_t stream, std::vector<int>& first) const {
   Rng rng(options_.seed, stream, kResamplingParticle);
   const int num_particles = now_.particles.size();
-  const std::vector<int> first = between_layers_->resample(now_.particles.log_weights, num_particles, rng);
+  first = between_layers_->resample(now_.particles.log_weights, num_particles, rng);
   // Shuffled, for both lists come sorted and would pair every particle with itself.
   std::vector<int> second = between_layers_->resample(now_.particles.log_weights, num_particles, rng);
   for (size_t i = second.size(); i > 1; --i) std::swap(second[i - 1], second[rng.index(i)]);

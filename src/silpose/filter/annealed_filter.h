@@ -41,7 +41,8 @@ class AnnealedFilter : public SteppedParticles {
 
  private:
   void run_layers(uint64_t step, const Diffuse& diffuse, const LogLikelihood& log_likelihood, FilterReport& report);
-  StateBatch recombine(uint64_t stream) const;
+  // `first`: the parent that each new particle has most of. [N]
+  StateBatch recombine(uint64_t stream, std::vector<int>& first) const;
   std::vector<double> noise_deviation(int layer) const;
 
   std::shared_ptr<const Resampler> resampler_;

@@ -18,7 +18,7 @@ FilterReport ParticleFilter::step(const Propagate& propagate, const LogLikelihoo
 
   const double num_effective = effective_sample_size(now_.particles.weights());
   if (options_.resample_below >= 1 || num_effective < options_.resample_below * now_.particles.size()) {
-    now_.particles.resample(*resampler_, regenerate, options_.seed, stream, report);
+    now_.particles.resample(*resampler_, regenerate, inherit_, options_.seed, stream, report);
   }
 
   propagate(now_.particles.states, stream);

@@ -174,23 +174,6 @@ TEST(ParticleFilter, RegeneratesWhatTheCombGivesUp) {
   EXPECT_EQ((filter.particles().states.array() == 9).count(), 3);
 }
 
-TEST(ParticleFilter, InjectionReplacesTheLowest) {
-  ParticleFilter filter(normal_states(4, 1, 1), resampler("systematic"));
-  filter.step(kStay, [](const StateBatch&, std::span<double> result) {
-    for (size_t i = 0; i < 4; ++i) result[i] = std::log(static_cast<double>(i + 1));
-  });
-  const double third = filter.particles().states(2, 0);
-  filter.inject(StateBatch::Constant(2, 1, 77));
-  EXPECT_EQ(filter.particles().states(0, 0), 77);
-  EXPECT_EQ(filter.particles().states(1, 0), 77);
-  EXPECT_EQ(filter.particles().states(2, 0), third);
-  // 1/4, 1/4, 3/10, 4/10 before normalising.
-  EXPECT_NEAR(filter.particles().weights()[0], 0.25 / 1.2, 1e-12);
-  EXPECT_NEAR(filter.particles().weights()[3], 0.4 / 1.2, 1e-12);
-  EXPECT_THROW(filter.inject(StateBatch::Zero(5, 1)), std::invalid_argument);
-  EXPECT_THROW(filter.inject(StateBatch::Zero(1, 2)), std::invalid_argument);
-}
-
 TEST(ParticleFilter, RefusesNothing) {
   EXPECT_THROW(ParticleFilter(StateBatch(0, 2), resampler("systematic")), std::invalid_argument);
   EXPECT_THROW(ParticleFilter(StateBatch::Zero(2, 2), nullptr), std::invalid_argument);

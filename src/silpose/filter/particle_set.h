@@ -20,6 +20,9 @@ using Propagate = std::function<void(StateBatch& states, uint64_t stream)>;
 using LogLikelihood = std::function<void(const StateBatch& states, std::span<double> log_likelihood)>;
 // Regenerates the given rows: at random, or by a proposal.
 using Regenerate = std::function<void(StateBatch& states, std::span<const int> rows, uint64_t stream)>;
+// Is called after every resampling, those between the layers of annealing too: particle n continues particle
+// ancestors[n], or is regenerated (kRegenerate). For what belongs to particles but is no row of numbers. [N]
+using Inherit = std::function<void(std::span<const int> ancestors)>;
 
 struct FilterReport {
   double effective_sample_size = 0;  // after weighing
@@ -42,12 +45,8 @@ struct ParticleSet {
 
   // N new particles, equally weighted; notes in `report` that it happened.
   // Errors: throws std::invalid_argument when new particles are asked for and `regenerate` is empty.
-  void resample(const Resampler& resampler, const Regenerate& regenerate, uint64_t seed, uint64_t stream,
-                FilterReport& report);
-
-  // Puts candidates [K, D] in the place of the K lowest weighted particles, each with the average weight 1 / N.
-  // REQUIRES: K <= N, the same D.
-  void inject(const StateBatch& candidates);
+  void resample(const Resampler& resampler, const Regenerate& regenerate, const Inherit& inherit, uint64_t seed,
+                uint64_t stream, FilterReport& report);
 
   static auto members(auto& s) { return std::tie(s.states, s.log_weights); }
 };

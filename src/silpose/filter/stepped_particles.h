@@ -1,4 +1,4 @@
-// SteppedParticles: what every particle filter carries from step to step, and may be changed from outside in between.
+// SteppedParticles: what every particle filter carries from step to step.
 // Threads: one thread at a time.
 #pragma once
 
@@ -22,11 +22,8 @@ class SteppedParticles {
   // No observation: propagates only; weights stay.
   FilterReport coast(const Propagate& propagate);
 
-  // ParticleSet::inject: candidates [K, D] for the K lowest weighted particles.
-  void inject(const StateBatch& candidates) { now_.particles.inject(candidates); }
-
-  // Starts over from states [N, D], equally weighted; the step counter continues.
-  void restart(StateBatch states) { now_.particles = ParticleSet::uniform(std::move(states)); }
+  // What is called after every resampling from now on.
+  void on_resampling(Inherit inherit) { inherit_ = std::move(inherit); }
 
   [[nodiscard]] const ParticleSet& particles() const { return now_.particles; }
 
@@ -39,6 +36,7 @@ class SteppedParticles {
   explicit SteppedParticles(StateBatch states) : now_{ParticleSet::uniform(std::move(states))} {}
 
   FilterState now_;
+  Inherit inherit_;
 };
 
 }  // namespace silpose

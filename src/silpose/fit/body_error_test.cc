@@ -21,7 +21,7 @@ class BodyErrorTest : public ::testing::Test {
       observation.mask = render_silhouette(*body_, camera, pose_);
       observations.push_back(std::move(observation));
     }
-    CoverageEvidence evidence = error.likelihood().prepare(observations, Blur::k4, Blur::k4);
+    CoverageEvidence evidence = error.likelihood().evidence_of(observations, Blur::k4, Blur::k4);
     for (size_t c = 0; c < cameras.size(); ++c) {
       evidence.noise[c] = noise * std::pow(evidence.views[c].pixel_unit, 3);
     }

@@ -276,7 +276,7 @@ std::vector<StartingPose> initialise(const CoverageLikelihood& likelihood, const
                                      const InitialisationOptions& options) {
   check(candidates.rows() > 0, "initialise: no candidates");
   const BodyModel& body = likelihood.body();
-  CoverageEvidence evidence = likelihood.prepare(observations, Blur::k32, Blur::k2, options.evidence);
+  CoverageEvidence evidence = likelihood.evidence_of(observations, Blur::k32, Blur::k2, options.evidence);
   const std::optional<size_t> seen = evidence.first_seen();
   check(seen.has_value(), "initialise: no camera found anything");
   const PinholeCamera& camera = likelihood.cameras()[*seen];

@@ -58,7 +58,7 @@ TEST_F(InitialisationTest, DescendsToABentPoseFromAStraightOne) {
   // The tube is square: a quarter turn, bent the other way, looks the same. Some start is the truth, all fit.
   CoverageLikelihood::Scratch scratch(likelihood_);
   const Observation seen = see(truth);
-  const auto evidence = likelihood_.prepare({&seen, 1});
+  const auto evidence = likelihood_.evidence_of({&seen, 1});
   const double straight =
       likelihood_.energy(evidence, Blur::k4, std::vector<double>{0.2, 0.5, 0.1, 0, 0, 0, 0, 0}, scratch);
   EXPECT_LT(likelihood_.energy(evidence, Blur::k4, starts[0].pose, scratch), 0.1 * straight);

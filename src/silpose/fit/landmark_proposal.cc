@@ -77,21 +77,32 @@ class Problem {
 
 }  // namespace
 
-LandmarkProposal::LandmarkProposal(std::shared_ptr<const BodyModel> body, const PinholeCamera& camera)
-    : body_(std::move(body)), camera_(camera), common_(body_->skeleton, body_->profile) {}
+size_t start_camera(std::span<const Observation> observations) {
+  for (size_t c = 0; c < observations.size(); ++c) {
+    if (!observations[c].keypoints_2d.empty() && !observations[c].box().empty()) return c;
+  }
+  return 0;
+}
 
-StateBatch LandmarkProposal::propose(const Observation& observation, int num_candidates, Rng& rng) const {
+LandmarkProposal::LandmarkProposal(std::shared_ptr<const BodyModel> body)
+    : body_(std::move(body)), common_(body_->skeleton, body_->profile) {}
+
+Proposed LandmarkProposal::propose(const ProposalContext& context, int num_candidates, Rng& rng) const {
   check(num_candidates >= 0, "LandmarkProposal: {} candidates", num_candidates);
-  const KeypointTerm term(*body_, camera_, observation, {.places = 1});
+  check(!context.observations.empty() && context.observations.size() == context.cameras.size(),
+        "LandmarkProposal: {} observations for {} cameras", context.observations.size(), context.cameras.size());
+  const size_t c = start_camera(context.observations);
+  const Observation& observation = context.observations[c];
+  const PinholeCamera& camera = context.cameras[c];
+  const KeypointTerm term(*body_, camera, observation, {.places = 1});
   const Box box = observation.box();
-  if (!term.determines_pose() || box.empty()) return common_.propose(observation, num_candidates, rng);
+  if (!term.determines_pose() || box.empty()) return common_.propose(context, num_candidates, rng);
 
   // At the distance at which the body covers as much as the mask, in the middle of its box.
-  const double depth = body_->height_m * camera_.fy /
+  const double depth = body_->height_m * camera.fy /
                        std::sqrt(1 / body_->profile.silhouette_area * static_cast<double>(observation.mask.count()));
   const Eigen::Vector2d middle(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
-  const Eigen::Vector3d root =
-      camera_.cam_from_world.inverse() * Eigen::Vector3d(camera_.ray_from_pixel(middle) * depth);
+  const Eigen::Vector3d root = camera.cam_from_world.inverse() * Eigen::Vector3d(camera.ray_from_pixel(middle) * depth);
   const Problem problem(*body_, term);
   const StateBatch& poses = common_.poses();
   std::vector<Fit> fits(static_cast<size_t>(poses.rows()));
@@ -117,7 +128,7 @@ StateBatch LandmarkProposal::propose(const Observation& observation, int num_can
   if (num_candidates > 0) fits.resize(std::min(fits.size(), static_cast<size_t>(num_candidates)));
   StateBatch chosen(std::ssize(fits), poses.cols());
   for (size_t k = 0; k < fits.size(); ++k) chosen.row(static_cast<Eigen::Index>(k)) = fits[k].pose.transpose();
-  return chosen;
+  return {std::move(chosen)};
 }
 
 }  // namespace silpose

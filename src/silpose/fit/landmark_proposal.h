@@ -3,10 +3,12 @@
 // Threads: as Proposal.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
 
 #include "silpose/body/body_model.h"
-#include "silpose/geometry/camera.h"
+#include "silpose/image/observation.h"
 #include "silpose/motion/common_poses.h"
 #include "silpose/motion/proposal.h"
 
@@ -14,16 +16,18 @@ namespace silpose {
 
 class LandmarkProposal final : public Proposal {
  public:
-  // For observations of this camera.
-  LandmarkProposal(std::shared_ptr<const BodyModel> body, const PinholeCamera& camera);
+  explicit LandmarkProposal(std::shared_ptr<const BodyModel> body);
 
-  // The best agreement first, those left out that agree far less.
-  [[nodiscard]] StateBatch propose(const Observation& observation, int num_candidates, Rng& rng) const override;
+  // By the camera of start_camera(): the best agreement first, those left out that agree far less.
+  [[nodiscard]] Proposed propose(const ProposalContext& context, int num_candidates, Rng& rng) const override;
 
  private:
   std::shared_ptr<const BodyModel> body_;
-  PinholeCamera camera_;
   CommonPoses common_;
 };
+
+// The camera whose observation starts use: the first one with keypoints, else the first. Shapes: one observation per
+// camera.
+size_t start_camera(std::span<const Observation> observations);
 
 }  // namespace silpose

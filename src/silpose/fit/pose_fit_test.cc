@@ -18,7 +18,7 @@ class PoseFitTest : public ::testing::Test {
   CoverageEvidence see(const std::vector<double>& pose) const {
     Observation observation;
     observation.mask = render_silhouette(*body_, camera_, pose);
-    return likelihood_.prepare({&observation, 1});
+    return likelihood_.evidence_of({&observation, 1});
   }
   static Eigen::VectorXd vector_of(const std::vector<double>& pose) {
     return Eigen::Map<const Eigen::VectorXd>(pose.data(), std::ssize(pose));

@@ -26,11 +26,12 @@ struct Trust {
 };
 
 struct Observation {
-  Mask mask;                                  // [H, W] the subject's silhouette
-  ByteImage confidence = {};                  // [H, W] of each pixel, 255: certain; empty: certain everywhere
-  std::shared_ptr<const Mask> ignored = {};   // [H, W] pixels of which nothing is known; null: none
-  std::vector<Keypoint2D> keypoints_2d = {};  // of the body; empty from most segmenters
-  Keypoints3D keypoints_3d = {};              // the same in space
+  Mask mask;                                     // [H, W] the subject's silhouette
+  ByteImage confidence = {};                     // [H, W] of each pixel, 255: certain; empty: certain everywhere
+  std::shared_ptr<const Mask> ignored = {};      // [H, W] pixels of which nothing is known; null: none
+  std::shared_ptr<const DepthImage> depth = {};  // [H, W]; null: not measured
+  std::vector<Keypoint2D> keypoints_2d = {};     // of the body; empty from most segmenters
+  Keypoints3D keypoints_3d = {};                 // the same in space
   Trust trust = {};
 
   // The smallest box around the mask; empty where nothing was found.
@@ -46,7 +47,7 @@ struct Observation {
 // explanation.
 constexpr uint8_t pixel_weight(uint8_t confidence) { return static_cast<uint8_t>(128 + confidence / 2); }
 
-// Errors: throws std::invalid_argument where the confidence or the ignored pixels are not of the mask's size.
+// Errors: throws std::invalid_argument where confidence, ignored pixels or depth are not of the mask's size.
 void check_sizes(const Observation& observation);
 
 // A mask trusted less, such as one whose area jumped, would pull the track away: coasting does less harm. [guess]

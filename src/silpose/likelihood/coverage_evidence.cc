@@ -27,6 +27,31 @@ bool CoverageEvidence::has_directions() const {
                              [](const View& view) { return view.keypoints && view.keypoints->num_directions(); });
 }
 
+double CoverageEvidence::energy_of_terms(std::span<const double> pose) const {
+  double sum = 0;
+  for (const Term& term : terms) {
+    const Eigen::Index D = term.likelihood->body().skeleton.num_dofs();
+    const StateBatch one = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), D);
+    double log_likelihood = 0;
+    term.likelihood->add_log_likelihood(*term.evidence, one, {&log_likelihood, 1});
+    sum -= 2 * log_likelihood;
+  }
+  return sum;
+}
+
+double CoverageEvidence::add_terms(std::span<const double> pose, Eigen::VectorXd& gradient,
+                                   Eigen::MatrixXd& hessian) const {
+  double sum = 0;
+  for (const Term& term : terms) {
+    const Eigen::Index D = term.likelihood->body().skeleton.num_dofs();
+    const NormalEquations equations = term.likelihood->linearise(*term.evidence, pose.first(static_cast<size_t>(D)));
+    sum += equations.energy;
+    gradient.head(D) += equations.gradient;
+    hessian.topLeftCorner(D, D) += equations.hessian;
+  }
+  return sum;
+}
+
 double CoverageEvidence::keypoint_cost(const Skeleton& skeleton, std::span<const double> pose) const {
   double sum = 0;
   for (const View& view : views) {

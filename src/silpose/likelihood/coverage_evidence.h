@@ -14,6 +14,7 @@
 #include "silpose/body/skeleton.h"
 #include "silpose/image/mask.h"
 #include "silpose/likelihood/keypoint_term.h"
+#include "silpose/likelihood/pose_likelihood.h"
 
 namespace silpose {
 
@@ -23,7 +24,7 @@ enum class Blur { k2 = 0, k4, k8, k16, k32 };
 inline constexpr std::array<int, 5> kBlurSigma = {2, 4, 8, 16, 32};
 
 // The observations of one instant, as covered cells and keypoints.
-struct CoverageEvidence {
+struct CoverageEvidence : PoseLikelihood::Evidence {
   static constexpr double kSubjectHeight = 280;  // pixels
   struct Raster {
     int cell = 0;                   // pixels a side
@@ -45,6 +46,12 @@ struct CoverageEvidence {
   std::vector<View> views;    // [C]
   std::vector<double> noise;  // [C] outline variance times correlation length, px^3; may be set by the caller
   bool silhouettes = true;    // whether they are used
+  // Of the likelihood's further terms.
+  struct Term {
+    std::shared_ptr<const PoseLikelihood> likelihood;
+    std::shared_ptr<const PoseLikelihood::Evidence> evidence;
+  };
+  std::vector<Term> terms;
 
   // Sets the noise of the cameras that have one, in units of pixel_unit^3 (as estimate_noise() gives it). [C], or
   // empty.
@@ -58,6 +65,10 @@ struct CoverageEvidence {
   [[nodiscard]] bool has_directions() const;
   // Cost of the keypoints alone. `skeleton` is that of the body, or of one made stretchable.
   [[nodiscard]] double keypoint_cost(const Skeleton& skeleton, std::span<const double> pose) const;
+  // E of the further terms alone. A pose may have more numbers than the terms' bodies have DOF; the first count.
+  [[nodiscard]] double energy_of_terms(std::span<const double> pose) const;
+  // The same; adds to `gradient` [D' >= D] and `hessian` [D', D'] of half of it.
+  double add_terms(std::span<const double> pose, Eigen::VectorXd& gradient, Eigen::MatrixXd& hessian) const;
 };
 
 // Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "silpose/base/check.h"
+#include "silpose/base/parallel.h"
 #include "silpose/base/scratch_pool.h"
 #include "silpose/likelihood/coverage_difference.h"
 #include "silpose/likelihood/coverage_raster.h"
@@ -35,8 +36,12 @@ struct CoverageLikelihood::Impl {
     EdgeTopology topology;
     LensDerivative lens;
   };
-  Impl(std::shared_ptr<const BodyModel> the_body, std::vector<PinholeCamera> the_cameras, int the_rows_per_cell)
-      : body(std::move(the_body)), cameras(std::move(the_cameras)), rows_per_cell(the_rows_per_cell) {
+  Impl(std::shared_ptr<const BodyModel> the_body, std::vector<PinholeCamera> the_cameras, int the_rows_per_cell,
+       std::vector<std::shared_ptr<const PoseLikelihood>> the_terms)
+      : body(std::move(the_body)),
+        cameras(std::move(the_cameras)),
+        rows_per_cell(the_rows_per_cell),
+        terms(std::move(the_terms)) {
     views.reserve(cameras.size());
     for (const PinholeCamera& camera : cameras) views.emplace_back(*body, camera);
   }
@@ -44,6 +49,7 @@ struct CoverageLikelihood::Impl {
   std::vector<PinholeCamera> cameras;
   std::vector<View> views;
   int rows_per_cell;
+  std::vector<std::shared_ptr<const PoseLikelihood>> terms;
 
   mutable ScratchPool<Scratch::Impl> pool;
 };
@@ -67,19 +73,25 @@ CoverageLikelihood::Scratch::~Scratch() {
 }
 
 CoverageLikelihood::CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras,
-                                       int rows_per_cell) {
+                                       int rows_per_cell, std::vector<std::shared_ptr<const PoseLikelihood>> terms) {
   check(rows_per_cell >= 1, "CoverageLikelihood: {} rows per cell", rows_per_cell);
   check(body != nullptr && !body->rest.faces.empty(), "CoverageLikelihood: no body");
   check(!cameras.empty(), "CoverageLikelihood: no camera");
-  impl_ = std::make_shared<const Impl>(std::move(body), std::move(cameras), rows_per_cell);
+  for (const auto& term : terms) {
+    check(term != nullptr && term->can_linearise(), "CoverageLikelihood: a term that cannot be linearised");
+    check(term->body().skeleton.num_dofs() == body->skeleton.num_dofs(),
+          "CoverageLikelihood: a term of {} DOF for a body of {}", term->body().skeleton.num_dofs(),
+          body->skeleton.num_dofs());
+  }
+  impl_ = std::make_shared<const Impl>(std::move(body), std::move(cameras), rows_per_cell, std::move(terms));
 }
 CoverageLikelihood::~CoverageLikelihood() = default;
 
 const BodyModel& CoverageLikelihood::body() const { return *impl_->body; }
 std::span<const PinholeCamera> CoverageLikelihood::cameras() const { return impl_->cameras; }
 
-CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observations, Blur widest, Blur narrowest,
-                                             EvidenceKind kind) const {
+CoverageEvidence CoverageLikelihood::evidence_of(std::span<const Observation> observations, Blur widest, Blur narrowest,
+                                                 EvidenceKind kind) const {
   check(observations.size() == cameras().size(), "CoverageLikelihood: {} observations for {} cameras",
         observations.size(), cameras().size());
   CoverageEvidence evidence;
@@ -105,7 +117,33 @@ CoverageEvidence CoverageLikelihood::prepare(std::span<const Observation> observ
       view.rasters[b] = coverage_raster(observation, cell);
     }
   }
+  for (const auto& term : impl_->terms) evidence.terms.push_back({term, term->prepare(observations)});
   return evidence;
+}
+
+std::unique_ptr<const PoseLikelihood::Evidence> CoverageLikelihood::prepare(
+    std::span<const Observation> observations) const {
+  return std::make_unique<CoverageEvidence>(evidence_of(observations, kRankingBlur, kRankingBlur, EvidenceKind::kBoth));
+}
+
+void CoverageLikelihood::add_log_likelihood(const Evidence& evidence, const StateBatch& states,
+                                            std::span<double> out) const {
+  constexpr size_t kGrain = 8;  // [guess] poses per task
+  check_batch(body(), states, out);
+  const auto& own = own_evidence<CoverageEvidence>(evidence);
+  const auto num_dofs = static_cast<size_t>(body().skeleton.num_dofs());
+  parallel_for(out.size(), kGrain, [&](size_t begin, size_t end) {
+    Scratch scratch(*this);
+    for (size_t n = begin; n < end; ++n) {
+      const std::span pose(states.row(static_cast<Eigen::Index>(n)).data(), num_dofs);
+      out[n] -= 0.5 * energy(own, kRankingBlur, pose, scratch);
+    }
+  });
+}
+
+NormalEquations CoverageLikelihood::linearise(const Evidence& evidence, std::span<const double> pose) const {
+  Scratch scratch(*this);
+  return linearise(own_evidence<CoverageEvidence>(evidence), kRankingBlur, pose, scratch);
 }
 
 namespace {
@@ -149,7 +187,7 @@ std::vector<double> CoverageLikelihood::residuals(const CoverageEvidence& eviden
 
 double CoverageLikelihood::energy(const CoverageEvidence& evidence, Blur blur, std::span<const double> pose,
                                   Scratch& scratch) const {
-  double sum = evidence.keypoint_cost(impl_->body->skeleton, pose);
+  double sum = evidence.keypoint_cost(impl_->body->skeleton, pose) + evidence.energy_of_terms(pose);
   if (!evidence.silhouettes) return sum;
   const std::vector<double> residual = residuals(evidence, blur, pose, scratch);
   for (size_t c = 0; c < residual.size(); ++c) {
@@ -185,6 +223,7 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
     equations.energy += weight * s.difference.finish();
     s.difference.add_normal_equations(weight, s.end_motion.columns(), equations.gradient, equations.hessian);
   }
+  equations.energy += evidence.add_terms(pose, equations.gradient, equations.hessian);
   return equations;
 }
 

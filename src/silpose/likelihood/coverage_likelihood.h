@@ -10,8 +10,9 @@
 // length along the outline (px^3) and E counts independent errors: -2 log-likelihood.
 // The derivative is exact for the sampled rows: each end of a span moves by dx = J_x - (dx/dy) J_y of the surface point
 // there. Blurring is done once and on both sides: G * G is one kernel, wanted only at the cells that hold an end.
-// Where a network found keypoints, their cost (keypoint_term.h) is added to E, so that fitting, ranking and weighing
-// poses by E use both kinds of evidence.
+// Where a network found keypoints, their cost (keypoint_term.h) is added to E, and so are further terms that are given,
+// so that fitting, ranking and weighing poses by E use all kinds of evidence. As a PoseLikelihood it uses all of them,
+// at kRankingBlur and the noise of exact masks.
 // Based on: Gauss-Newton on smooth image differences (references.bib: nocedal2006).
 // Threads: constant after construction; one Scratch per thread.
 #pragma once
@@ -26,35 +27,37 @@
 #include "silpose/image/observation.h"
 #include "silpose/likelihood/coverage_evidence.h"
 #include "silpose/likelihood/keypoint_term.h"
+#include "silpose/likelihood/pose_likelihood.h"
 
 namespace silpose {
 
-// E and its Gauss-Newton model: E(pose + d) = energy + 2 gradient . d + d' hessian d.
-struct NormalEquations {
-  double energy = 0;
-  Eigen::VectorXd gradient;  // [D]
-  Eigen::MatrixXd hessian;   // [D, D]
-};
+// Rows of the model that are sampled per cell, in fits.
+inline constexpr int kFittingRows = 2;  // [guess]
 
-class CoverageLikelihood {
+class CoverageLikelihood final : public PoseLikelihood {
   struct Impl;
 
  public:
-  // `rows_per_cell`: how finely the model's coverage is sampled; more make E smoother, and slower.
-  CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras, int rows_per_cell = 2);
-  ~CoverageLikelihood();
+  // `rows_per_cell`: how finely the model's coverage is sampled; more make E smoother, and slower. `terms`: further
+  // evidence. Errors: throws std::invalid_argument without body or camera, and for a term that cannot be linearised or
+  // is of a body with other degrees of freedom.
+  CoverageLikelihood(std::shared_ptr<const BodyModel> body, std::vector<PinholeCamera> cameras,
+                     int rows_per_cell = kFittingRows, std::vector<std::shared_ptr<const PoseLikelihood>> terms = {});
+  ~CoverageLikelihood() override;
 
   // The noise of exact masks, in units of pixel_unit^3: the default of CoverageEvidence::noise.
   static constexpr double kExactNoise = 10;
   // Outlines are never trusted further than this, however well a body may fit: its skin has its own errors.
   static constexpr double kLeastNoise = 1;
+  // By which candidates are ranked. [guess]
+  static constexpr Blur kRankingBlur = Blur::k4;
 
   // Shapes: one observation per camera. A camera whose observation found nothing is ignored. Only blurs from
   // `narrowest` to `widest` are prepared. Errors: throws std::invalid_argument where a mask or confidence does not fit
   // its camera.
-  [[nodiscard]] CoverageEvidence prepare(std::span<const Observation> observations, Blur widest = Blur::k32,
-                                         Blur narrowest = Blur::k2,
-                                         EvidenceKind kind = EvidenceKind::kSilhouette) const;
+  [[nodiscard]] CoverageEvidence evidence_of(std::span<const Observation> observations, Blur widest = Blur::k32,
+                                             Blur narrowest = Blur::k2,
+                                             EvidenceKind kind = EvidenceKind::kSilhouette) const;
 
   // Working memory of evaluations, one per thread. It returns to its likelihood at the end, for reuse: cheap to make.
   class Scratch {
@@ -92,8 +95,14 @@ class CoverageLikelihood {
   std::vector<double> least_noise(const CoverageEvidence& evidence, std::span<const Eigen::VectorXd> poses,
                                   Scratch& scratch) const;
 
-  [[nodiscard]] const BodyModel& body() const;
+  [[nodiscard]] const BodyModel& body() const override;
   [[nodiscard]] std::span<const PinholeCamera> cameras() const;
+
+  // As PoseLikelihood. Keypoints count where there are some.
+  [[nodiscard]] std::unique_ptr<const Evidence> prepare(std::span<const Observation> observations) const override;
+  void add_log_likelihood(const Evidence& evidence, const StateBatch& states, std::span<double> out) const override;
+  [[nodiscard]] bool can_linearise() const override { return true; }
+  [[nodiscard]] NormalEquations linearise(const Evidence& evidence, std::span<const double> pose) const override;
 
  private:
   bool draw(size_t camera_idx, const CoverageEvidence::Raster& raster, std::span<const double> pose,

@@ -97,7 +97,7 @@ TEST(CoverageLikelihood, IsSmallestAtTheTruth) {
   const CoverageLikelihood likelihood(body, {camera});
   CoverageLikelihood::Scratch scratch(likelihood);
   const std::vector<double> truth = bent_pose(*body, 0.3);
-  const auto evidence = likelihood.prepare(std::vector{observation_of(render_silhouette(*body, camera, truth))});
+  const auto evidence = likelihood.evidence_of(std::vector{observation_of(render_silhouette(*body, camera, truth))});
   for (const Blur blur : {Blur::k2, Blur::k4, Blur::k8, Blur::k16}) {
     const double at_truth = likelihood.energy(evidence, blur, truth, scratch);
     for (size_t d = 0; d < truth.size(); ++d) {
@@ -132,7 +132,7 @@ TEST_P(CoverageDerivative, AgreesWithFiniteDifferences) {
   std::vector<Observation> observations;
   for (const PinholeCamera& camera : cameras)
     observations.push_back(observation_of(render_silhouette(*body, camera, truth)));
-  const auto evidence = likelihood.prepare(observations);
+  const auto evidence = likelihood.evidence_of(observations);
   for (const Blur blur : {Blur::k4, Blur::k8}) {
     const NormalEquations equations = likelihood.linearise(evidence, blur, pose, scratch);
     EXPECT_NEAR(equations.energy, likelihood.energy(evidence, blur, pose, scratch), 1e-6 * equations.energy);
@@ -179,7 +179,7 @@ TEST_P(CoverageDerivative, AgreesWithThePlainReference) {
       }
       observations.push_back(std::move(observation));
     }
-    const auto evidence = likelihood.prepare(observations);
+    const auto evidence = likelihood.evidence_of(observations);
     for (const Blur blur : {Blur::k2, Blur::k4, Blur::k16}) {
       const NormalEquations theirs = linearise_reference(*body, cameras, evidence, blur, pose);
       for_each_simd_target([&](const char* target) {
@@ -202,7 +202,7 @@ TEST_P(CoverageDerivative, AgreesWithThePlainReference) {
 class OneViewTest : public ::testing::Test {
  protected:
   [[nodiscard]] double energy(const Observation& seen, Blur blur = Blur::k4) {
-    return likelihood_.energy(likelihood_.prepare(std::vector{seen}), blur, truth_, scratch_);
+    return likelihood_.energy(likelihood_.evidence_of(std::vector{seen}), blur, truth_, scratch_);
   }
 
   std::shared_ptr<const BodyModel> body_ = small_body();
@@ -252,7 +252,7 @@ TEST_F(OneViewTest, ABodyBehindIgnoredPixelsStaysWhereItIs) {
 
 TEST(CoverageLikelihood, RefusesAMaskOfAnotherSize) {
   const CoverageLikelihood likelihood(small_body(), {default_camera(320, 240)});
-  EXPECT_THROW((void)likelihood.prepare(std::vector{observation_of(Mask(64, 48))}), std::invalid_argument);
+  EXPECT_THROW((void)likelihood.evidence_of(std::vector{observation_of(Mask(64, 48))}), std::invalid_argument);
 }
 
 }  // namespace

@@ -115,7 +115,7 @@ TEST_F(KeypointTermTest, BothKindsOfEvidenceAddUp) {
   without.keypoints_2d.clear();
   without.keypoints_3d = {};
   const std::vector<Observation> seen = {with, without};
-  const auto prepare = [&](EvidenceKind kind) { return likelihood.prepare(seen, Blur::k4, Blur::k4, kind); };
+  const auto prepare = [&](EvidenceKind kind) { return likelihood.evidence_of(seen, Blur::k4, Blur::k4, kind); };
   const auto silhouettes = prepare(EvidenceKind::kSilhouette), keypoints = prepare(EvidenceKind::kKeypoints),
              both = prepare(EvidenceKind::kBoth);
   EXPECT_FALSE(silhouettes.has_directions());

@@ -2,198 +2,153 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "silpose/base/check.h"
-#include "silpose/base/parallel.h"
 #include "silpose/shape/normalised_silhouette.h"
 
 namespace silpose {
 namespace {
 
-// What differs over the sum of both areas. A body that is not seen at all shares nothing with what was observed.
-double area_distance(const OutlineRenderer::Counts& counts, int64_t observed_area) {
-  const int64_t sum = counts.model + observed_area;
-  return sum == 0 ? 1.0 : static_cast<double>(sum - 2 * counts.both) / static_cast<double>(sum);
-}
-
-int64_t sum_of(const ByteImage& covered) {
-  return std::accumulate(covered.pixels().begin(), covered.pixels().end(), int64_t{0});
-}
-
-// Leaves out of the view what its observation ignores: whole raster pixels, of coverages also those that are ignored in
-// part.
-void ignore(Evidence::View& view, const Mask& ignored) {
-  if (view.covered.empty()) {
-    view.ignored = resample_mask(ignored, view.window);
-    view.observed = without(std::move(view.observed), view.ignored);
-    return;
-  }
-  view.ignored_coverage = resample_coverage(ignored, view.window, kFullCoverage);
-  const auto covered = view.covered.pixels(), out = view.ignored_coverage.pixels();
-  for (size_t i = 0; i < covered.size(); ++i) {
-    if (out[i] > 0) covered[i] = 0, out[i] = kFullCoverage;
-  }
-}
-
-// So that the samples of a whole picture fit into a raster.
-double largest_scale(const PinholeCamera& camera) {
-  constexpr double kMostSamples = 1 << 29;  // [definition]
-  return std::sqrt(kMostSamples / kFullCoverage / camera.width / camera.height);
-}
-
-// [guess] Silhouettes weigh by `sharpness`, which is far less than their likelihood; so do keypoints, or few particles
-// would be left.
-constexpr double kKeypointShare = 0.2;
+constexpr double kMostPixels = 1 << 29;  // [definition] of a raster on which silhouettes are drawn
+constexpr size_t kMostMasks = 256;       // [guess] drawn at a time by metrics that look at them: 1 MB of 180 x 180 each
 
 }  // namespace
 
-void LikelihoodOptions::check() const {
+// What one camera saw; no description: it is not used.
+struct SilhouetteLikelihood::View {
+  double trust = 0;
+  Window window;
+  std::unique_ptr<const ShapeMetric::Description> observed;
+};
+
+struct SilhouetteLikelihood::Prepared final : Evidence {
+  std::vector<View> views;  // [C]
+};
+
+void SilhouetteOptions::check() const {
   silpose::check(std::isfinite(sharpness) && sharpness > 0, "sharpness {} is not a positive number", sharpness);
   silpose::check(resolution >= 16 && resolution <= 1024, "resolution {} is not within 16..1024", resolution);
 }
 
-SilhouetteLikelihood::SilhouetteLikelihood(std::vector<std::shared_ptr<const BatchRenderer>> renderers,
-                                           LikelihoodOptions options)
-    : renderers_(std::move(renderers)), options_(options) {
+SilhouetteLikelihood::SilhouetteLikelihood(std::vector<std::shared_ptr<const RenderBackend>> backends,
+                                           std::shared_ptr<const ShapeMetric> metric, SilhouetteOptions options)
+    : backends_(std::move(backends)), metric_(std::move(metric)), options_(options) {
   options_.check();
-  check(!renderers_.empty(), "SilhouetteLikelihood: no renderer");
-  for (const auto& renderer : renderers_) {
-    check(&renderer->body() == &renderers_.front()->body(), "SilhouetteLikelihood: renderers of different bodies");
+  check(!backends_.empty(), "SilhouetteLikelihood: no backend");
+  check(metric_ != nullptr, "SilhouetteLikelihood: no metric");
+  for (const auto& backend : backends_) {
+    check(&backend->body() == &body(), "SilhouetteLikelihood: backends of different bodies");
   }
 }
 
-Evidence SilhouetteLikelihood::prepare(std::span<const Observation> observations) const {
-  check(observations.size() == renderers_.size(), "SilhouetteLikelihood: {} observations for {} cameras",
-        observations.size(), renderers_.size());
-  Evidence evidence;
+Window SilhouetteLikelihood::window_of_comparison(const Box& box, const PinholeCamera& camera) const {
+  if (options_.comparison == Comparison::kCropped) return window_of(box, options_.resolution, options_.resolution);
+  // Never enlarged: there is nothing to see between the pixels of a small subject.
+  const double longer_side = std::max({box.width, box.height, 1});
+  const Window raster_of_pixel = metric_->raster({.width = 1, .height = 1});
+  const double pixels =
+      static_cast<double>(raster_of_pixel.width) * raster_of_pixel.height * camera.width * camera.height;
+  const double scale = std::min({1.0, options_.resolution / longer_side, std::sqrt(kMostPixels / pixels)});
+  return window_of_image(camera.width, camera.height, scale);
+}
+
+SilhouetteLikelihood::View SilhouetteLikelihood::view_of(const Observation& observation,
+                                                         const PinholeCamera& camera) const {
+  check(observation.mask.width() == camera.width && observation.mask.height() == camera.height,
+        "SilhouetteLikelihood: mask of {}x{} for camera '{}' of {}x{}", observation.mask.width(),
+        observation.mask.height(), camera.name, camera.width, camera.height);
+  const Box box = observation.box();
+  if (observation.trust.nothing_found || box.empty()) return {};
+  View view{.trust = observation.trust.overall, .window = window_of_comparison(box, camera)};
+  const Mask* ignored = options_.comparison == Comparison::kImage ? observation.ignored.get() : nullptr;
+  if (ignored != nullptr) check_sizes(observation);
+  view.observed = metric_->describe(observation.mask, ignored, view.window);
+  if (const auto* areas = dynamic_cast<const AreaMetric::Described*>(view.observed.get());
+      areas != nullptr && areas->area == 0) {
+    return {};  // too small to be seen on this raster, or all of it is ignored
+  }
+  return view;
+}
+
+std::unique_ptr<const PoseLikelihood::Evidence> SilhouetteLikelihood::prepare(
+    std::span<const Observation> observations) const {
+  check(observations.size() == backends_.size(), "SilhouetteLikelihood: {} observations for {} cameras",
+        observations.size(), backends_.size());
+  auto prepared = std::make_unique<Prepared>();
   for (size_t c = 0; c < observations.size(); ++c) {
-    const Observation& observation = observations[c];
-    const PinholeCamera& camera = renderers_[c]->camera();
-    check(observation.mask.width() == camera.width && observation.mask.height() == camera.height,
-          "SilhouetteLikelihood: mask of {}x{} for camera '{}' of {}x{}", observation.mask.width(),
-          observation.mask.height(), camera.name, camera.width, camera.height);
-    Evidence::View view;
-    const Box box = observation.box();
-    if (!observation.trust.nothing_found && !box.empty()) {
-      if (options_.comparison == Comparison::kCropped) {
-        view.window = window_of(box, options_.resolution, options_.resolution);
-      } else {
-        // Never enlarged: there is nothing to see between the pixels of a small subject.
-        const double longer_side = std::max({box.width, box.height, 1});
-        double scale = std::min(1.0, options_.resolution / longer_side);
-        if (options_.metric == Metric::kCoverage) scale = std::min(scale, largest_scale(camera));
-        view.window = window_of_image(camera.width, camera.height, scale);
-      }
-      if (options_.metric == Metric::kCoverage) {
-        view.covered = resample_coverage(observation.mask, view.window, kFullCoverage);
-      } else {
-        view.observed = resample_mask(observation.mask, view.window);
-      }
-      if (observation.ignored && options_.comparison == Comparison::kImage) {
-        check_sizes(observation);
-        ignore(view, *observation.ignored);
-      }
-      view.area = view.covered.empty() ? view.observed.count() : sum_of(view.covered);
-      view.trust = view.area > 0 ? observation.trust.overall : 0;
-      // Cropped silhouettes carry no information about the position, nor do image places of a pose that is elsewhere.
-      if (view.trust > 0) {
-        view.keypoints = make_keypoint_term(body(), camera, observation, options_.evidence,
-                                            options_.comparison == Comparison::kImage);
-      }
-    }
-    evidence.views.push_back(std::move(view));
+    prepared->views.push_back(view_of(observations[c], backends_[c]->camera()));
   }
-  return evidence;
+  return prepared;
 }
 
-void SilhouetteLikelihood::accumulate(const Evidence& evidence, const StateBatch& states, bool weighted,
+// By counting while drawing; false where the metric or the backend cannot.
+bool SilhouetteLikelihood::count(size_t camera_idx, const View& view, const BatchView& poses,
+                                 std::span<double> out) const {
+  const auto* observed = dynamic_cast<const AreaMetric::Described*>(view.observed.get());
+  if (observed == nullptr) return false;
+  const Framing framing{view.window, options_.comparison == Comparison::kCropped};
+  const auto count_against = [&](const Mask& mask, const ByteImage& coverage,
+                                 std::vector<OutlineRenderer::Counts>& counts) {
+    return coverage.empty() ? backends_[camera_idx]->counts(poses, framing, mask, counts)
+                            : backends_[camera_idx]->coverages(poses, framing, coverage, counts);
+  };
+  std::vector<OutlineRenderer::Counts> counts(out.size());
+  if (!count_against(observed->mask, observed->coverage, counts)) return false;
+  if (observed->has_ignored()) {
+    std::vector<OutlineRenderer::Counts> unseen(out.size());
+    count_against(observed->ignored, observed->ignored_coverage, unseen);
+    for (size_t n = 0; n < out.size(); ++n) counts[n].model -= unseen[n].both;
+  }
+  for (size_t n = 0; n < out.size(); ++n) {
+    out[n] = AreaMetric::distance({observed->area, counts[n].model, counts[n].both});
+  }
+  return true;
+}
+
+void SilhouetteLikelihood::distances_of(size_t camera_idx, const View& view, const BatchView& poses,
+                                        std::span<double> out) const {
+  if (count(camera_idx, view, poses, out)) return;
+  const Framing framing{metric_->raster(view.window), options_.comparison == Comparison::kCropped};
+  std::vector<Mask> masks;
+  for (size_t begin = 0; begin < poses.num_poses; begin += kMostMasks) {
+    const size_t num = std::min(kMostMasks, poses.num_poses - begin);
+    masks.resize(num);
+    backends_[camera_idx]->silhouettes({poses.data + begin * poses.stride, num, poses.num_dofs, poses.stride}, framing,
+                                       masks);
+    metric_->distances(*view.observed, masks, out.subspan(begin, num));
+  }
+}
+
+void SilhouetteLikelihood::accumulate(const Prepared& evidence, const StateBatch& states, bool weighted,
                                       std::span<double> out) const {
-  const auto num_states = static_cast<size_t>(states.rows());
-  check(out.size() == num_states, "SilhouetteLikelihood: {} outputs for {} states", out.size(), num_states);
-  check(evidence.views.size() == renderers_.size(), "SilhouetteLikelihood: evidence of {} cameras for {}",
-        evidence.views.size(), renderers_.size());
-  const auto num_dofs = static_cast<size_t>(body().skeleton.num_dofs());
-  check(static_cast<size_t>(states.cols()) >= num_dofs, "SilhouetteLikelihood: states of {} columns, body of {} DOF",
-        states.cols(), num_dofs);
-  std::fill(out.begin(), out.end(), 0.0);
-  const BatchView batch{states.data(), num_states, num_dofs, static_cast<size_t>(states.cols())};
-  std::vector<OutlineRenderer::Counts> counts(num_states);
-  for (size_t c = 0; c < renderers_.size(); ++c) {
-    const Evidence::View& view = evidence.views[c];
+  check_batch(body(), states, out);
+  check(evidence.views.size() == backends_.size(), "SilhouetteLikelihood: evidence of {} cameras for {}",
+        evidence.views.size(), backends_.size());
+  std::ranges::fill(out, 0.0);
+  const BatchView poses{states.data(), out.size(), static_cast<size_t>(body().skeleton.num_dofs()),
+                        static_cast<size_t>(states.cols())};
+  std::vector<double> distances(out.size());
+  for (size_t c = 0; c < backends_.size(); ++c) {
+    const View& view = evidence.views[c];
     if (view.trust <= 0) continue;
-    const BatchRenderer& renderer = *renderers_[c];
-    if (options_.metric == Metric::kCoverage) {
-      if (options_.comparison == Comparison::kCropped) {
-        renderer.coverages_cropped(batch, view.covered, counts);
-      } else {
-        renderer.coverages(batch, view.window, view.covered, counts);
-      }
-    } else if (options_.comparison == Comparison::kCropped) {
-      renderer.counts_cropped(batch, view.observed, counts);
-    } else {
-      renderer.counts(batch, view.window, view.observed, counts);
-    }
-    if (view.ignored.width() > 0 || !view.ignored_coverage.empty()) {
-      std::vector<OutlineRenderer::Counts> unseen(num_states);
-      if (options_.metric == Metric::kCoverage) {
-        renderer.coverages(batch, view.window, view.ignored_coverage, unseen);
-      } else {
-        renderer.counts(batch, view.window, view.ignored, unseen);
-      }
-      for (size_t n = 0; n < num_states; ++n) counts[n].model -= unseen[n].both;
-    }
-    for (size_t n = 0; n < num_states; ++n) {
-      out[n] += (weighted ? view.trust : 1.0) * area_distance(counts[n], view.area);
-    }
+    distances_of(c, view, poses, distances);
+    for (size_t n = 0; n < out.size(); ++n) out[n] += (weighted ? view.trust : 1.0) * distances[n];
   }
 }
 
 void SilhouetteLikelihood::distances(const Evidence& evidence, const StateBatch& states, std::span<double> out) const {
-  accumulate(evidence, states, false, out);
-  const auto seen =
-      std::count_if(evidence.views.begin(), evidence.views.end(), [](const auto& v) { return v.trust > 0; });
+  const auto& prepared = own_evidence<Prepared>(evidence);
+  accumulate(prepared, states, false, out);
+  const auto seen = std::ranges::count_if(prepared.views, [](const View& view) { return view.trust > 0; });
   for (double& distance : out) distance = seen > 0 ? distance / static_cast<double>(seen) : 0;
 }
 
-void SilhouetteLikelihood::log_likelihood(const Evidence& evidence, const StateBatch& states,
-                                          std::span<double> out) const {
-  accumulate(evidence, states, true, out);
-  const bool silhouettes = options_.evidence != EvidenceKind::kKeypoints;
-  for (double& value : out) value *= silhouettes ? -options_.sharpness : 0;
-  const Skeleton& skeleton = body().skeleton;
-  for (const Evidence::View& view : evidence.views) {
-    if (!view.keypoints) continue;
-    parallel_for(out.size(), 64, [&](size_t begin, size_t end) {
-      for (size_t n = begin; n < end; ++n) {
-        const std::span pose(states.row(static_cast<Eigen::Index>(n)).data(), skeleton.dofs().size());
-        out[n] -= kKeypointShare * 0.5 * view.trust * view.keypoints->cost(skeleton, pose);
-      }
-    });
-  }
-}
-
-SilhouetteLikelihood::Derivative SilhouetteLikelihood::derivative(const Evidence& evidence,
-                                                                  std::span<const double> pose,
-                                                                  std::span<const double> steps) const {
-  const auto num_dofs = static_cast<Eigen::Index>(body().skeleton.num_dofs());
-  check(std::ssize(pose) == num_dofs && std::ssize(steps) == num_dofs,
-        "SilhouetteLikelihood: pose of {} and steps of {} numbers for {} DOF", pose.size(), steps.size(), num_dofs);
-  const Eigen::Map<const Eigen::RowVectorXd> centre(pose.data(), num_dofs);
-  StateBatch states = centre.replicate(2 * num_dofs + 1, 1);
-  for (Eigen::Index d = 0; d < num_dofs; ++d) {
-    check(steps[d] > 0, "SilhouetteLikelihood: step {} of DOF {}", steps[d], d);
-    states(2 * d + 1, d) += steps[d];
-    states(2 * d + 2, d) -= steps[d];
-  }
-  std::vector<double> values(states.rows());
-  log_likelihood(evidence, states, values);
-  Derivative result{values[0], Eigen::VectorXd(num_dofs)};
-  for (Eigen::Index d = 0; d < num_dofs; ++d) {
-    result.gradient[d] = (values[2 * d + 1] - values[2 * d + 2]) / (2 * steps[d]);
-  }
-  return result;
+void SilhouetteLikelihood::add_log_likelihood(const Evidence& evidence, const StateBatch& states,
+                                              std::span<double> out) const {
+  std::vector<double> sums(out.size());
+  accumulate(own_evidence<Prepared>(evidence), states, true, sums);
+  for (size_t n = 0; n < out.size(); ++n) out[n] += -options_.sharpness * sums[n];
 }
 
 }  // namespace silpose

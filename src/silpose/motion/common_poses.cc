@@ -36,9 +36,9 @@ CommonPoses::CommonPoses(const Skeleton& skeleton, const RigProfile& profile) {
   }
 }
 
-StateBatch CommonPoses::propose(const Observation&, int num_candidates, Rng& rng) const {
+Proposed CommonPoses::propose(const ProposalContext&, int num_candidates, Rng& rng) const {
   check(num_candidates >= 0, "CommonPoses: {} candidates", num_candidates);
-  if (num_candidates == 0 || num_candidates >= poses_.rows()) return poses_;
+  if (num_candidates == 0 || num_candidates >= poses_.rows()) return {poses_};
   std::vector<Eigen::Index> order(static_cast<size_t>(poses_.rows()));
   std::iota(order.begin(), order.end(), 0);
   StateBatch chosen(num_candidates, poses_.cols());
@@ -47,7 +47,7 @@ StateBatch CommonPoses::propose(const Observation&, int num_candidates, Rng& rng
     std::swap(order[at], order[at + rng.index(order.size() - at)]);
     chosen.row(k) = poses_.row(order[at]);
   }
-  return chosen;
+  return {std::move(chosen)};
 }
 
 }  // namespace silpose

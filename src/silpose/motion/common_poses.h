@@ -19,7 +19,7 @@ class CommonPoses final : public Proposal {
   CommonPoses(const Skeleton& skeleton, const RigProfile& profile);
 
   // The root's translation is 0. If fewer are requested than exist: a random choice without repetition.
-  [[nodiscard]] StateBatch propose(const Observation& observation, int num_candidates, Rng& rng) const override;
+  [[nodiscard]] Proposed propose(const ProposalContext& context, int num_candidates, Rng& rng) const override;
 
   // All poses [K, D], heading by heading within each named pose; and each row's name.
   [[nodiscard]] const StateBatch& poses() const { return poses_; }

@@ -99,12 +99,12 @@ TEST_F(CommonPosesTest, LookLikeTheirNames) {
 
 TEST_F(CommonPosesTest, ProposesAllOrAChoiceWithoutRepetition) {
   Rng rng(1), again(1);
-  const StateBatch all = poses_.propose({}, 0, rng);
+  const StateBatch all = poses_.propose({}, 0, rng).poses;
   EXPECT_EQ(all.rows(), poses_.poses().rows());
-  EXPECT_EQ(poses_.propose({}, 100000, rng).rows(), all.rows());
+  EXPECT_EQ(poses_.propose({}, 100000, rng).poses.rows(), all.rows());
   (void)poses_.propose({}, 0, again);
-  const StateBatch some = poses_.propose({}, 20, rng);
-  EXPECT_TRUE((some.array() == poses_.propose({}, 20, again).array()).all());
+  const StateBatch some = poses_.propose({}, 20, rng).poses;
+  EXPECT_TRUE((some.array() == poses_.propose({}, 20, again).poses.array()).all());
   std::set<Eigen::Index> chosen;
   for (Eigen::Index i = 0; i < 20; ++i) {
     for (Eigen::Index k = 0; k < all.rows(); ++k) {

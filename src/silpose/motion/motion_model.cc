@@ -30,12 +30,12 @@ class Diffusion final : public MotionModel {
   std::vector<int> columns_of(std::span<const int> dofs) const override { return {dofs.begin(), dofs.end()}; }
   std::span<const double> deviation() const override { return deviation_; }
 
-  void propagate(StateBatch& states, double dt_s, uint64_t seed, uint64_t stream) const override {
-    check(dt_s >= 0, "diffusion: {} s", dt_s);
-    const double growth = std::sqrt(dt_s / kNoiseInterval_s);
+  void propagate(StateBatch& states, HiddenStates*, const MotionContext& context) const override {
+    check(context.dt_s >= 0, "diffusion: {} s", context.dt_s);
+    const double growth = std::sqrt(context.dt_s / kNoiseInterval_s);
     std::vector<double> grown = deviation_;
     for (double& value : grown) value *= growth;
-    diffuse(states, grown, seed, stream);
+    diffuse(states, grown, context.seed, context.stream);
   }
 
   void diffuse(StateBatch& states, std::span<const double> deviation, uint64_t seed, uint64_t stream) const override {
@@ -85,14 +85,15 @@ class FirstOrderAugmented final : public MotionModel {
 
   std::span<const double> deviation() const override { return deviation_; }
 
-  void propagate(StateBatch& states, double dt_s, uint64_t seed, uint64_t stream) const override {
+  void propagate(StateBatch& states, HiddenStates*, const MotionContext& context) const override {
+    const double dt_s = context.dt_s;
     check(states.cols() == state_size(), "first order: states of {} columns", states.cols());
     check(dt_s >= 0, "first order: {} s", dt_s);
     const double kept = std::exp(-velocity_decay_per_s_ * dt_s);
     // dt * n of eq. 2.18, with the n of a white acceleration: its variance is as 1 / dt, so that the spread after a
     // second is the same at any frame rate.
     const double growth = std::sqrt(dt_s / kNoiseInterval_s);
-    for_each_state(states, seed, stream, [&](double* x, double* v, Rng& rng) {
+    for_each_state(states, context.seed, context.stream, [&](double* x, double* v, Rng& rng) {
       for (size_t d = 0; d < num_dofs_; ++d) {
         const double velocity_change = growth * deviation_[num_dofs_ + d] * rng.normal();
         x[d] += dt_s * v[d] + 0.5 * dt_s * velocity_change;

@@ -62,7 +62,7 @@ TEST_P(MotionModelContract, StatesStartWithThePose) {
 TEST_P(MotionModelContract, LimitsAlwaysHold) {
   StateBatch states = model_->states_from_poses(copies(skeleton_.denormalise(std::vector(37, 1.0)), 300));
   for (uint64_t step = 0; step < 40; ++step) {
-    model_->propagate(states, 0.2, 1, step);
+    model_->propagate(states, nullptr, {.dt_s = 0.2, .seed = 1, .stream = step});
     ASSERT_TRUE(within_limits(skeleton_, states)) << step;
     ASSERT_TRUE(states.allFinite());
   }
@@ -73,7 +73,7 @@ TEST_P(MotionModelContract, LimitsAlwaysHold) {
 TEST_P(MotionModelContract, NoTimeMovesNothing) {
   const StateBatch before = model_->states_from_poses(copies(middle(skeleton_), 3));
   StateBatch states = before;
-  model_->propagate(states, 0, 1, 1);
+  model_->propagate(states, nullptr, {.dt_s = 0, .seed = 1, .stream = 1});
   EXPECT_TRUE(states.isApprox(before, 1e-12));
   model_->diffuse(states, std::vector(static_cast<size_t>(model_->state_size()), 0.0), 1, 1);
   EXPECT_TRUE(states.isApprox(before, 1e-12));
@@ -83,7 +83,7 @@ TEST_P(MotionModelContract, SpreadDoesNotDependOnTheFrameRate) {
   const auto spread_after_a_tenth = [&](int num_steps) {
     StateBatch states = model_->states_from_poses(copies(middle(skeleton_), 4000));
     for (int step = 0; step < num_steps; ++step) {
-      model_->propagate(states, 0.1 / num_steps, 7, static_cast<uint64_t>(step));
+      model_->propagate(states, nullptr, {.dt_s = 0.1 / num_steps, .seed = 7, .stream = static_cast<uint64_t>(step)});
     }
     return weighted_deviation(states, std::vector(4000, 1.0));
   };
@@ -95,7 +95,8 @@ TEST_P(MotionModelContract, IsTheSameOnAnyNumberOfThreads) {
   const auto run = [&](int num_threads) {
     const ThreadLimit limit(num_threads);
     StateBatch states = model_->states_from_poses(copies(middle(skeleton_), 500));
-    for (uint64_t step = 0; step < 3; ++step) model_->propagate(states, 1.0 / 30, 3, step);
+    for (uint64_t step = 0; step < 3; ++step)
+      model_->propagate(states, nullptr, {.dt_s = 1.0 / 30, .seed = 3, .stream = step});
     model_->diffuse(states, model_->deviation(), 3, 4);
     return states;
   };
@@ -117,10 +118,10 @@ TEST_P(MotionModelContract, ColumnsOfADofAreItsOwn) {
 
 TEST_P(MotionModelContract, RefusesBadInput) {
   StateBatch states = model_->states_from_poses(copies(middle(skeleton_), 2));
-  EXPECT_THROW(model_->propagate(states, -1, 1, 1), std::invalid_argument);
+  EXPECT_THROW(model_->propagate(states, nullptr, {.dt_s = -1, .seed = 1, .stream = 1}), std::invalid_argument);
   EXPECT_THROW(model_->diffuse(states, std::vector{1.0}, 1, 1), std::invalid_argument);
   StateBatch narrow = StateBatch::Zero(2, 3);
-  EXPECT_THROW(model_->propagate(narrow, 0.1, 1, 1), std::invalid_argument);
+  EXPECT_THROW(model_->propagate(narrow, nullptr, {.dt_s = 0.1, .seed = 1, .stream = 1}), std::invalid_argument);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MotionModelContract, testing::Values("diffusion", "first-order-augmented"),
@@ -135,7 +136,7 @@ TEST(Diffusion, HasTheDeviationOfItsNoiseAndNoDrift) {
   const auto model = make_motion_model("diffusion", skeleton, profile_of(skeleton)).value();
   const std::vector<double> start = middle(skeleton);
   StateBatch states = model->states_from_poses(copies(start, 20000));
-  model->propagate(states, 4.0 / 30, 1, 1);  // four frames: twice the deviation
+  model->propagate(states, nullptr, {.dt_s = 4.0 / 30, .seed = 1, .stream = 1});  // four frames: twice the deviation
   const std::vector<double> weight(20000, 1.0);
   const std::vector<double> mean = weighted_mean(states, weight), spread = weighted_deviation(states, weight);
   for (size_t d = 0; d < 37; ++d) {
@@ -152,7 +153,7 @@ TEST(Diffusion, WrapsHeadings) {
   const int heading = *skeleton.find_dof("root_ry");
   pose[static_cast<size_t>(heading)] = to_radians(179);
   StateBatch states = copies(pose, 2000);
-  model->propagate(states, 1.0 / 30, 1, 1);
+  model->propagate(states, nullptr, {.dt_s = 1.0 / 30, .seed = 1, .stream = 1});
   EXPECT_LE(states.col(heading).maxCoeff(), kPi);
   EXPECT_GE(states.col(heading).minCoeff(), -kPi);
   EXPECT_GT((states.col(heading).array() < 0).count(), 300);
@@ -170,10 +171,12 @@ TEST(FirstOrderAugmented, MovesByItsVelocity) {
   StateBatch states = model->states_from_poses(copies(std::vector(37, 0.0), 1));
   states(0, 37 + shin) = to_radians(100);  // per second
   states(0, 37 + heading) = to_radians(100);
-  for (uint64_t step = 0; step < 10; ++step) model->propagate(states, 0.1, 1, step);
+  for (uint64_t step = 0; step < 10; ++step)
+    model->propagate(states, nullptr, {.dt_s = 0.1, .seed = 1, .stream = step});
   EXPECT_NEAR(states(0, shin), to_radians(100), 1e-6);
   EXPECT_NEAR(states(0, heading), to_radians(100), 1e-6);
-  for (uint64_t step = 10; step < 20; ++step) model->propagate(states, 0.1, 1, step);
+  for (uint64_t step = 10; step < 20; ++step)
+    model->propagate(states, nullptr, {.dt_s = 0.1, .seed = 1, .stream = step});
   EXPECT_NEAR(states(0, shin), to_radians(150), 1e-12);  // the knee stops at its limit
   EXPECT_NEAR(states(0, 37 + shin), 0, 1e-12);
   EXPECT_NEAR(states(0, heading), to_radians(-160), 1e-6);  // the heading goes around
@@ -187,7 +190,8 @@ TEST(FirstOrderAugmented, VelocityDecays) {
                          .value();
   StateBatch states = StateBatch::Zero(1, 16);
   states(0, 8) = 1;
-  for (uint64_t step = 0; step < 50; ++step) model->propagate(states, 0.01, 1, step);
+  for (uint64_t step = 0; step < 50; ++step)
+    model->propagate(states, nullptr, {.dt_s = 0.01, .seed = 1, .stream = step});
   EXPECT_NEAR(states(0, 8), std::exp(-1.0), 1e-9);
   EXPECT_THROW(
       (void)make_motion_model("first-order-augmented", skeleton, profile_of(skeleton), {.velocity_decay_per_s = -1}),
@@ -202,7 +206,7 @@ TEST(FirstOrderAugmented, BoundedTranslationsStopAtTheirLimits) {
       make_motion_model("first-order-augmented", skeleton, tree_profile(skeleton), {.sigma_deg = 1e-9}).value();
   StateBatch states = StateBatch::Zero(1, 2);
   states(0, 1) = 1;
-  for (uint64_t step = 0; step < 5; ++step) model->propagate(states, 0.1, 1, step);
+  for (uint64_t step = 0; step < 5; ++step) model->propagate(states, nullptr, {.dt_s = 0.1, .seed = 1, .stream = step});
   EXPECT_NEAR(states(0, 0), 0.2, 1e-9);  // noise moves it off its end again
   EXPECT_LE(states(0, 0), 0.2);
   EXPECT_NEAR(states(0, 1), 0, 1e-9);

@@ -290,7 +290,7 @@ void fit_lengths(const std::shared_ptr<const BodyModel>& stretched, const ShapeF
   const CoverageLikelihood likelihood(stretched, options.cameras);
   if (evidence.empty()) {
     for (const ClipInstant* instant : instants.seen) {
-      evidence.push_back(likelihood.prepare(instant->observations, Blur::k8, Blur::k4, options.evidence));
+      evidence.push_back(likelihood.evidence_of(instant->observations, Blur::k8, Blur::k4, options.evidence));
     }
   }
   const PosePrior pose_prior(stretched, options.floor);

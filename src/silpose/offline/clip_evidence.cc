@@ -6,7 +6,7 @@
 namespace silpose {
 
 CoverageEvidence ClipEvidence::at(size_t t) const {
-  CoverageEvidence evidence = likelihood.prepare(instants[t]->observations, kClipBlur, kClipBlur, kind);
+  CoverageEvidence evidence = likelihood.evidence_of(instants[t]->observations, kClipBlur, kClipBlur, kind);
   evidence.set_noise(noise);
   return evidence;
 }

@@ -7,6 +7,7 @@
 #include "silpose/base/check.h"
 #include "silpose/body/levels.h"
 #include "silpose/fit/initialisation.h"
+#include "silpose/fit/landmark_proposal.h"
 #include "silpose/offline/clip_passes.h"
 
 namespace silpose {
@@ -70,7 +71,8 @@ size_t best_explained(const TrackerOptions& options, const JudgedClip& clip, con
   if (starts.size() == 1) return starts.front();
   // Passes start from scratch, so a coarse mesh will do to choose.
   const auto body = level_of_detail(options.body, options_of_pass(options).lod_vertices);
-  const CoverageLikelihood likelihood(body, options.cameras);
+  const CoverageLikelihood likelihood(body, options.cameras, kFittingRows, fitted_terms(options));
+  const std::shared_ptr<const Proposal> proposal = start_proposal(options);
   const PosePrior pose_prior(body, options.has_floor());
   double best = -std::numeric_limits<double>::infinity();
   size_t chosen = starts.front();
@@ -79,8 +81,7 @@ size_t best_explained(const TrackerOptions& options, const JudgedClip& clip, con
     if (!proceed()) break;
     Rng rng(options.seed, t);
     const auto& seen = clip[t].observations;
-    const size_t camera = start_camera(seen);
-    const StateBatch candidates = start_proposal(options, camera)->propose(seen[camera], 0, rng);
+    const StateBatch candidates = proposal->propose({seen, options.cameras}, 0, rng).poses;
     const auto found = initialise(likelihood, pose_prior, seen, candidates, search);
     if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
   }

@@ -141,7 +141,7 @@ class Problem {
       CoverageLikelihood::Scratch scratch(likelihood_);
       for (size_t t = begin; t < end; ++t) {
         if (!seen_[t]) continue;
-        const CoverageEvidence evidence = likelihood_.prepare(clip_[t]->observations, Blur::k8, Blur::k8);
+        const CoverageEvidence evidence = likelihood_.evidence_of(clip_[t]->observations, Blur::k8, Blur::k8);
         found[t] = likelihood_.estimate_noise(evidence, view(poses[t]), scratch);
       }
     });
@@ -168,7 +168,7 @@ class Problem {
         at.hessian[t] = MatrixXd::Zero(D, D);
         bool directions_seen = false;
         if (seen_[t]) {
-          CoverageEvidence evidence = likelihood_.prepare(clip_[t]->observations, blur, blur, options_.evidence);
+          CoverageEvidence evidence = likelihood_.evidence_of(clip_[t]->observations, blur, blur, options_.evidence);
           directions_seen = evidence.has_directions();
           evidence.set_noise(noise_);
           NormalEquations equations = likelihood_.linearise(evidence, blur, view(poses[t]), scratch);

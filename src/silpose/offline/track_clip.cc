@@ -30,7 +30,8 @@ class ClipTracker {
     options_.check();
     for (const ClipInstant& instant : clip) seen_.push_back(any_is_usable(instant.observations));
     const auto body = level_of_detail(options_.body, options_.lod_vertices);
-    likelihood_ = std::make_unique<const CoverageLikelihood>(body, options_.cameras);
+    likelihood_ =
+        std::make_unique<const CoverageLikelihood>(body, options_.cameras, kFittingRows, fitted_terms(options_));
     pose_prior_ = std::make_unique<const PosePrior>(body, options_.has_floor());
   }
 

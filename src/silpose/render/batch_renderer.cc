@@ -148,6 +148,14 @@ void BatchRenderer::silhouettes(const BatchView& poses, const Window& window, st
       [&](size_t n, const OutlineScan& outline) { outline.draw(out[n]); });
 }
 
+void BatchRenderer::silhouettes_cropped(const BatchView& poses, int width, int height, std::span<Mask> out) const {
+  check(out.size() == poses.num_poses, "BatchRenderer: {} poses, room for {}", poses.num_poses, out.size());
+  std::ranges::fill(out, Mask(width, height));
+  impl_->for_each_seen(
+      poses, [&](auto pose, auto& scratch) { return impl_->project_cropped(width, height, false, pose, scratch); },
+      [&](size_t n, const OutlineScan& outline) { outline.draw(out[n]); });
+}
+
 Mask BatchRenderer::silhouette(std::span<const double> pose) const {
   Mask mask;
   const Window picture{.width = camera().width, .height = camera().height};

@@ -111,15 +111,6 @@ namespace silpose {
 
 HWY_EXPORT(count_coverage);
 
-Window sample_window(const Window& window) {
-  return {.x0 = window.x0,
-          .y0 = window.y0,
-          .scale_x = window.scale_x * kCoverageSamples,
-          .scale_y = window.scale_y * kCoverageSamples,
-          .width = window.width * kCoverageSamples,
-          .height = window.height * kCoverageSamples};
-}
-
 CoverageColumns::CoverageColumns(const ByteImage& coverage) : width_(coverage.width()), height_(coverage.height()) {
   check(coverage.channels() == 1, "CoverageColumns: {} channels", coverage.channels());
   constexpr size_t kSpare = 8;

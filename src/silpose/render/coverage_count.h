@@ -16,9 +16,6 @@
 
 namespace silpose {
 
-// The window whose pixels are a window's samples.
-[[nodiscard]] Window sample_window(const Window& window);
-
 // An observation's coverages as kernels read them: eight pixels of a row per word, word columns of all rows one after
 // the other.
 class CoverageColumns {

@@ -48,8 +48,7 @@ void project_vertices(const PinholeCamera& camera, std::span<const Eigen::Vector
 void draw_silhouette_reference(std::span<const Eigen::Vector2f> pixels, std::span<const Face> faces,
                                const Window& window, Mask& mask, std::span<const Face> cut_faces = {});
 
-// How much of each pixel the silhouette covers, 0 to kFullCoverage: the reference drawn kCoverageSamples times finer.
-inline constexpr int kCoverageSamples = 8, kFullCoverage = kCoverageSamples * kCoverageSamples;
+// How much of each pixel the silhouette covers, 0 to kFullCoverage (window.h): the reference drawn finer.
 [[nodiscard]] ByteImage draw_coverage_reference(std::span<const Eigen::Vector2f> pixels, std::span<const Face> faces,
                                                 const Window& window, std::span<const Face> cut_faces = {});
 
@@ -109,6 +108,8 @@ class BatchRenderer {
                          std::span<OutlineRenderer::Counts> out) const;
   // The silhouettes themselves, each of the window's size: [N]. A pose that is not seen has none of its pixels set.
   void silhouettes(const BatchView& poses, const Window& window, std::span<Mask> out) const;
+  // Cropped as by counts_cropped(), width x height pixels each: [N].
+  void silhouettes_cropped(const BatchView& poses, int width, int height, std::span<Mask> out) const;
   // One pose [D] over the whole image.
   [[nodiscard]] Mask silhouette(std::span<const double> pose) const;
 

@@ -11,7 +11,7 @@
 namespace silpose {
 namespace {
 
-constexpr FileKind kCheckpoint{.magic = "SILPTRAK", .version = 5, .name = "checkpoint of silpose track"};
+constexpr FileKind kCheckpoint{.magic = "SILPTRAK", .version = 6, .name = "checkpoint of silpose track"};
 
 std::string bytes_of(const PinholeCamera& camera) {
   return to_bytes(camera.name, camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy,

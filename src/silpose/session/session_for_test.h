@@ -24,11 +24,11 @@ namespace silpose {
 // The tube upright or bent, at the places where it starts: what common poses are for a human.
 class TubeStarts : public Proposal {
  public:
-  StateBatch propose(const Observation& /*seen*/, int /*count*/, Rng& /*rng*/) const override {
+  Proposed propose(const ProposalContext& /*context*/, int /*count*/, Rng& /*rng*/) const override {
     StateBatch states = StateBatch::Zero(3, 8);
     states(1, 5) = 0.5;
     states(2, 5) = -0.5;
-    return states;
+    return {states};
   }
 };
 

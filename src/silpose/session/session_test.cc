@@ -69,9 +69,9 @@ class SessionTest : public FolderTest {
 // Fails the test where a start is searched.
 class NoStarts : public Proposal {
  public:
-  StateBatch propose(const Observation& /*seen*/, int /*count*/, Rng& /*rng*/) const override {
+  Proposed propose(const ProposalContext& /*context*/, int /*count*/, Rng& /*rng*/) const override {
     ADD_FAILURE() << "a start is searched";
-    return StateBatch::Zero(1, 8);
+    return {StateBatch::Zero(1, 8)};
   }
 };
 

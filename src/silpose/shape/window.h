@@ -11,6 +11,20 @@ struct Window {
   int width = 0, height = 0;        // raster pixels
 };
 
+// A pixel's coverage by a silhouette is the number of its samples inside, 0 to kFullCoverage: kCoverageSamples along
+// each axis. [definition]
+inline constexpr int kCoverageSamples = 8, kFullCoverage = kCoverageSamples * kCoverageSamples;
+
+// The window whose pixels are a window's samples.
+[[nodiscard]] inline Window sample_window(const Window& window) {
+  return {.x0 = window.x0,
+          .y0 = window.y0,
+          .scale_x = window.scale_x * kCoverageSamples,
+          .scale_y = window.scale_y * kCoverageSamples,
+          .width = window.width * kCoverageSamples,
+          .height = window.height * kCoverageSamples};
+}
+
 // A box [x0, x1] x [y0, y1] of image points.
 struct PixelBounds {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;

@@ -51,7 +51,7 @@ void FittedFilter::add(std::span<const StartingPose> starts) {
 
 FilterReport FittedFilter::step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) {
   const Stopwatch stopwatch;
-  CoverageEvidence evidence = fine_->prepare(observations, Blur::k8, Blur::k2, evidence_);
+  CoverageEvidence evidence = fine_->evidence_of(observations, Blur::k8, Blur::k2, evidence_);
   if (noise_.empty() || added_) begin_noise(evidence);
   evidence.set_noise(noise_);
   mixture_.step(evidence, dt_s);
@@ -107,6 +107,15 @@ FilterReport FittedFilter::report() {
   FilterReport report;
   report.effective_sample_size = effective_sample_size(particles_.weights());
   return report;
+}
+
+std::vector<double> FittedFilter::predict(double dt_s) const {
+  std::vector<double> pose = estimate();
+  // The first hypothesis is the best one, whose pose the estimate is.
+  const auto velocity = particles_.states.row(0).tail(std::ssize(pose));
+  for (size_t d = 0; d < pose.size(); ++d) pose[d] += dt_s * velocity[static_cast<Eigen::Index>(d)];
+  fine_->body().skeleton.clamp(pose);
+  return pose;
 }
 
 std::string FittedFilter::state() const {

@@ -29,6 +29,7 @@ class FittedFilter final : public PoseFilter {
   [[nodiscard]] const ParticleSet& particles() const override { return particles_; }  // the hypotheses' poses
   [[nodiscard]] std::vector<double> estimate() const override;
   [[nodiscard]] PoseSpread spread() const override;
+  [[nodiscard]] std::vector<double> predict(double dt_s) const override;
 
   [[nodiscard]] std::vector<double> noise() const override { return noise_; }
   [[nodiscard]] std::string state() const override;

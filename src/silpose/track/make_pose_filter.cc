@@ -7,6 +7,10 @@
 #include "silpose/base/state_bytes.h"
 #include "silpose/filter/estimate.h"
 #include "silpose/fit/landmark_proposal.h"
+#include "silpose/likelihood/keypoint_likelihood.h"
+#include "silpose/likelihood/silhouette_likelihood.h"
+#include "silpose/likelihood/sum_likelihood.h"
+#include "silpose/render/render_backend.h"
 #include "silpose/track/fitted_filter.h"
 #include "silpose/track/pose_estimate.h"
 #include "silpose/track/sampling_filter.h"
@@ -14,8 +18,13 @@
 namespace silpose {
 namespace {
 
-using Renderers = std::vector<std::shared_ptr<const BatchRenderer>>;
+using Backends = std::vector<std::shared_ptr<const RenderBackend>>;
 
+// [guess] Of the coarse mesh: how finely fits sample it.
+constexpr int kRankingRows = 1;
+// [guess] Silhouettes weigh by their sharpness, which is far less than their likelihood; so do keypoints, or few
+// particles would be left.
+constexpr double kKeypointShare = 0.2;
 constexpr int kCroppedSize = 64;  // [guess] raster pixels of the thesis' cropped silhouettes
 
 bool is_root(const Dof& dof) { return dof.joint_idx == 0; }
@@ -69,48 +78,88 @@ PoseSpread spread_of(const BodyModel& body, const ParticleSet& particles) {
   return spread;
 }
 
-LikelihoodOptions likelihood_options(const TrackerOptions& options) {
-  return {
-      .metric = options.sampling()->metric, .sharpness = options.sampling()->sharpness, .evidence = options.evidence};
+Backends make_backends(const TrackerOptions& options, const std::shared_ptr<const BodyModel>& body) {
+  Backends backends;
+  for (const PinholeCamera& camera : options.cameras) {
+    backends.push_back(options.make_backend ? options.make_backend(body, camera) : make_cpu_backend(body, camera));
+    check(backends.back() != nullptr, "make_backend: no backend");
+  }
+  return backends;
 }
 
-LikelihoodOptions cropped_options(const TrackerOptions& options) {
-  LikelihoodOptions cropped = likelihood_options(options);
-  cropped.comparison = Comparison::kCropped;
-  cropped.resolution = kCroppedSize;
-  return cropped;
+std::shared_ptr<const ShapeMetric> metric_of(const TrackerOptions& options) {
+  if (options.shape_metric) return options.shape_metric;
+  return std::make_shared<const AreaMetric>(
+      options.sampling()->metric == Metric::kCoverage ? AreaMetric::Unit::kSamples : AreaMetric::Unit::kPixels);
 }
 
-// Poses that the network of the first camera with keypoints recognises, the best few; none where it is not used.
+// What particles are weighed by: the kinds of evidence that the options name, and the program's own.
+std::shared_ptr<const PoseLikelihood> sampled_likelihood(const TrackerOptions& options, const Backends& backends,
+                                                         const std::shared_ptr<const BodyModel>& body,
+                                                         Comparison comparison) {
+  std::vector<std::shared_ptr<const PoseLikelihood>> parts;
+  if (options.evidence != EvidenceKind::kKeypoints) {
+    SilhouetteOptions silhouettes{.comparison = comparison, .sharpness = options.sampling()->sharpness};
+    if (comparison == Comparison::kCropped) silhouettes.resolution = kCroppedSize;
+    parts.push_back(std::make_shared<const SilhouetteLikelihood>(backends, metric_of(options), silhouettes));
+  }
+  if (options.evidence != EvidenceKind::kSilhouette) {
+    // Cropped silhouettes carry no information about the position, nor do image places of a pose that is elsewhere.
+    const KeypointOptions keypoints{.alone = options.evidence == EvidenceKind::kKeypoints,
+                                    .places = comparison == Comparison::kImage,
+                                    .share = kKeypointShare};
+    parts.push_back(std::make_shared<const KeypointLikelihood>(body, options.cameras, keypoints));
+  }
+  parts.insert(parts.end(), options.likelihoods.begin(), options.likelihoods.end());
+  if (parts.size() == 1) return parts.front();
+  return std::make_shared<const SumLikelihood>(std::move(parts));
+}
+
+std::shared_ptr<const MotionModel> motion_of(const TrackerOptions& options) {
+  if (options.motion_model) return options.motion_model;
+  return make_motion_model(options.sampling()->motion, options.body->skeleton, options.body->profile,
+                           {.sigma_deg = options.sampling()->sigma_deg})
+      .value();
+}
+
+// Poses to regenerate particles from: the program's proposal, or the best few that the network of the first camera with
+// keypoints recognises; none where they are not used.
 class Recognition {
  public:
-  explicit Recognition(const TrackerOptions& options) : body_(options.body), cameras_(options.cameras) {
-    if (options.sampling()->regenerate_from != RegenerateFrom::kNetwork || options.sampling()->regenerate == 0) return;
-    for (const PinholeCamera& camera : options.cameras) proposals_.emplace_back(options.body, camera);
+  explicit Recognition(const TrackerOptions& options)
+      : body_(options.body), cameras_(options.cameras), own_(options.proposal) {
+    is_used_ = options.sampling()->regenerate_from == RegenerateFrom::kNetwork && options.sampling()->regenerate > 0;
+    if (is_used_ && !own_) keypoints_ = std::make_shared<const LandmarkProposal>(options.body);
   }
-  [[nodiscard]] StateBatch poses(std::span<const Observation> observations) const {
+  [[nodiscard]] Proposed poses(std::span<const Observation> observations, std::span<const double> last_pose,
+                               double dt_s, uint64_t step) const {
     constexpr int kCandidates = 4;  // [guess]
-    for (size_t c = 0; c < proposals_.size(); ++c) {
+    if (!is_used_) return {};
+    Rng rng(kProposalSeed, step);
+    if (own_) return own_->propose({observations, cameras_, last_pose, dt_s}, 0, rng);
+    for (size_t c = 0; c < cameras_.size(); ++c) {
       if (observations[c].box().empty() || observations[c].keypoints_3d.empty()) continue;
       if (!make_keypoint_term(*body_, cameras_[c], observations[c], EvidenceKind::kKeypoints)) continue;
-      Rng unused(0, 0);
-      return proposals_[c].propose(observations[c], kCandidates, unused);
+      return keypoints_->propose({observations.subspan(c, 1), std::span(cameras_).subspan(c, 1), last_pose, dt_s},
+                                 kCandidates, rng);
     }
-    return StateBatch(0, body_->skeleton.num_dofs());
+    return {};
   }
 
  private:
+  static constexpr uint64_t kProposalSeed = 0x7072;
   std::shared_ptr<const BodyModel> body_;
-  std::vector<PinholeCamera> cameras_;       // [C]
-  std::vector<LandmarkProposal> proposals_;  // [C], or none
+  std::vector<PinholeCamera> cameras_;  // [C]
+  std::shared_ptr<const Proposal> own_, keypoints_;
+  bool is_used_ = false;
 };
 
 // Root and pose in one state, compared on the whole image.
 class JointFilter final : public PoseFilter {
  public:
-  JointFilter(const TrackerOptions& options, Renderers renderers)
-      : likelihood_(std::move(renderers), likelihood_options(options)),
-        filter_(*options.sampling(), likelihood_,
+  JointFilter(const TrackerOptions& options, const std::shared_ptr<const BodyModel>& body)
+      : filter_(*options.sampling(),
+                sampled_likelihood(options, make_backends(options, body), body, Comparison::kImage), motion_of(options),
                 dofs_where(options.body->skeleton,
                            [&](const Dof& dof) { return !options.sampling()->root_fixed || !is_root(dof); }),
                 options.seed),
@@ -121,21 +170,21 @@ class JointFilter final : public PoseFilter {
     filter_.start(held_);
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
-    return filter_.step(likelihood_.prepare(observations), recognition_.poses(observations), held_, dt_s, seconds);
+    const Proposed proposed = recognition_.poses(observations, estimate(), dt_s, filter_.num_steps());
+    return filter_.step(observations, proposed, held_, dt_s, seconds);
   }
   FilterReport coast(double dt_s) override { return filter_.coast(dt_s); }
   const ParticleSet& particles() const override { return filter_.particles(); }
   std::vector<double> estimate() const override { return filter_.estimate(); }
-  PoseSpread spread() const override { return spread_of(likelihood_.body(), particles()); }
+  PoseSpread spread() const override { return spread_of(filter_.body(), particles()); }
   std::string state() const override { return to_bytes(held_, filter_.state()); }
   void restore(std::string_view state) override {
-    std::optional<FilterState> of_filter;
+    std::optional<SamplingFilter::State> of_filter;
     check(from_bytes(state, held_, of_filter), "JointFilter: not a state of it");
     filter_.restore(std::move(of_filter));
   }
 
  private:
-  SilhouetteLikelihood likelihood_;
   SamplingFilter filter_;
   Recognition recognition_;
   std::vector<double> held_;
@@ -145,19 +194,8 @@ class JointFilter final : public PoseFilter {
 // pose just found. In this order the root is fitted to the pose that is drawn, and no offset is left between the two.
 class TwoFilters final : public PoseFilter {
  public:
-  TwoFilters(const TrackerOptions& options, const Renderers& renderers)
-      : body_(options.body),
-        root_fixed_(options.sampling()->root_fixed),
-        cropped_(renderers, cropped_options(options)),
-        whole_(renderers, likelihood_options(options)),
-        pose_filter_(*options.sampling(), cropped_,
-                     dofs_where(body_->skeleton,
-                                [&](const Dof& dof) {
-                                  return root_fixed_ ? !is_root(dof) : !(is_root(dof) && dof.is_translation);
-                                }),
-                     options.seed),
-        root_filter_(*options.sampling(), whole_, dofs_where(body_->skeleton, is_root), options.seed + 1),
-        recognition_(options) {}
+  TwoFilters(const TrackerOptions& options, const std::shared_ptr<const BodyModel>& body)
+      : TwoFilters(options, body, make_backends(options, body)) {}
 
   void start(std::span<const StartingPose> starts) override {
     estimate_ = starts.front().pose;
@@ -166,9 +204,9 @@ class TwoFilters final : public PoseFilter {
     particles_ = pose_filter_.particles();
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
-    FilterReport report =
-        pose_filter_.step(cropped_.prepare(observations), recognition_.poses(observations), estimate_, dt_s, seconds);
-    if (!root_fixed_) root_filter_.step(whole_.prepare(observations), {}, pose_filter_.estimate(), dt_s, seconds);
+    const Proposed proposed = recognition_.poses(observations, estimate_, dt_s, pose_filter_.num_steps());
+    FilterReport report = pose_filter_.step(observations, proposed, estimate_, dt_s, seconds);
+    if (!root_fixed_) root_filter_.step(observations, {}, pose_filter_.estimate(), dt_s, seconds);
     combine();
     return report;
   }
@@ -180,10 +218,10 @@ class TwoFilters final : public PoseFilter {
   }
   const ParticleSet& particles() const override { return particles_; }
   std::vector<double> estimate() const override { return estimate_; }
-  PoseSpread spread() const override { return spread_of(whole_.body(), particles_); }
+  PoseSpread spread() const override { return spread_of(pose_filter_.body(), particles_); }
   std::string state() const override { return to_bytes(estimate_, pose_filter_.state(), root_filter_.state()); }
   void restore(std::string_view state) override {
-    std::optional<FilterState> of_pose, of_root;
+    std::optional<SamplingFilter::State> of_pose, of_root;
     check(from_bytes(state, estimate_, of_pose, of_root) && of_pose.has_value() == of_root.has_value(),
           "TwoFilters: not a state of it");
     const bool is_started = of_pose.has_value();
@@ -193,6 +231,19 @@ class TwoFilters final : public PoseFilter {
   }
 
  private:
+  TwoFilters(const TrackerOptions& options, const std::shared_ptr<const BodyModel>& body, const Backends& backends)
+      : body_(options.body),
+        root_fixed_(options.sampling()->root_fixed),
+        pose_filter_(
+            *options.sampling(), sampled_likelihood(options, backends, body, Comparison::kCropped), motion_of(options),
+            dofs_where(
+                body_->skeleton,
+                [&](const Dof& dof) { return root_fixed_ ? !is_root(dof) : !(is_root(dof) && dof.is_translation); }),
+            options.seed),
+        root_filter_(*options.sampling(), sampled_likelihood(options, backends, body, Comparison::kImage),
+                     motion_of(options), dofs_where(body_->skeleton, is_root), options.seed + 1),
+        recognition_(options) {}
+
   // Pose particles, each with a root translation of the root filter's.
   void combine() {
     particles_ = pose_filter_.particles();
@@ -211,7 +262,6 @@ class TwoFilters final : public PoseFilter {
 
   std::shared_ptr<const BodyModel> body_;
   bool root_fixed_;
-  SilhouetteLikelihood cropped_, whole_;
   SamplingFilter pose_filter_, root_filter_;
   Recognition recognition_;
   ParticleSet particles_;
@@ -220,13 +270,15 @@ class TwoFilters final : public PoseFilter {
 
 }  // namespace
 
-std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const Likelihoods& likelihoods) {
+std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const TrackedBody& body) {
   options.check();
   if (options.fitted() != nullptr) {
-    return std::make_unique<FittedFilter>(options, likelihoods.fine, likelihoods.coarse, likelihoods.pose_prior);
+    const auto ranking =
+        std::make_shared<const CoverageLikelihood>(body.coarse, options.cameras, kRankingRows, options.likelihoods);
+    return std::make_unique<FittedFilter>(options, body.likelihood, ranking, body.pose_prior);
   }
-  if (options.sampling()->separate_root) return std::make_unique<TwoFilters>(options, likelihoods.renderers);
-  return std::make_unique<JointFilter>(options, likelihoods.renderers);
+  if (options.sampling()->separate_root) return std::make_unique<TwoFilters>(options, body.fine);
+  return std::make_unique<JointFilter>(options, body.fine);
 }
 
 }  // namespace silpose

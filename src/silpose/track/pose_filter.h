@@ -38,6 +38,12 @@ class PoseFilter {
   [[nodiscard]] virtual const ParticleSet& particles() const = 0;  // states [N, D' >= D]
   [[nodiscard]] virtual std::vector<double> estimate() const = 0;  // [D]
   [[nodiscard]] virtual PoseSpread spread() const = 0;
+  // The estimate [D] as it is expected to be in `dt_s`, within the limits; the estimate where a filter knows no
+  // velocities.
+  [[nodiscard]] virtual std::vector<double> predict(double dt_s) const {
+    (void)dt_s;
+    return estimate();
+  }
   // Outline noise that was found, in units of pixel_unit^3 [C]; empty where a filter does not look.
   [[nodiscard]] virtual std::vector<double> noise() const { return {}; }
 

@@ -17,14 +17,13 @@ constexpr double kSurvivalRate = 0.5;  // of each annealing layer
 
 }  // namespace
 
-SamplingFilter::SamplingFilter(const SamplingOptions& options, const SilhouetteLikelihood& likelihood,
-                               std::vector<bool> free_dofs, uint64_t seed)
+SamplingFilter::SamplingFilter(const SamplingOptions& options, std::shared_ptr<const PoseLikelihood> likelihood,
+                               std::shared_ptr<const MotionModel> motion, std::vector<bool> free_dofs, uint64_t seed)
     : options_(options),
-      likelihood_(likelihood),
+      likelihood_(std::move(likelihood)),
+      motion_(std::move(motion)),
       free_dofs_(std::move(free_dofs)),
       seed_(seed),
-      motion_(make_motion_model(options.motion, skeleton(), likelihood.body().profile, {.sigma_deg = options.sigma_deg})
-                  .value()),
       resampler_(make_resampler(options.resampling, options.regenerate).value()) {}
 
 void SamplingFilter::start(std::span<const double> pose) {
@@ -38,6 +37,8 @@ void SamplingFilter::start(std::span<const double> pose) {
     deviation[d] = moves ? deviation[d] * std::sqrt(kStartFrames) : 0;
   }
   motion_->diffuse(states, deviation, seed_, kStartStream);
+  hidden_ = motion_->make_hidden(options_.num_particles);
+  history_.clear();
   make_filter(std::move(states));
 }
 
@@ -52,24 +53,69 @@ void SamplingFilter::make_filter(StateBatch states) {
                                    .adaptive_noise = true,
                                    .circular = periodic_dofs(skeleton()),
                                    .seed = seed_};
-    for (const auto& limb : limb_blocks(likelihood_.body())) annealed.blocks.push_back(motion_->columns_of(limb));
+    for (const auto& limb : limb_blocks(body())) annealed.blocks.push_back(motion_->columns_of(limb));
     filter_.emplace<AnnealedFilter>(std::move(states), resampler_, std::move(annealed));
   }
+  if (!hidden_) return;
+  const Inherit inherit = [this](std::span<const int> ancestors) { hidden_->select(ancestors); };
+  if (auto* annealed = std::get_if<AnnealedFilter>(&filter_)) annealed->on_resampling(inherit);
+  if (auto* plain = std::get_if<ParticleFilter>(&filter_)) plain->on_resampling(inherit);
 }
 
-FilterReport SamplingFilter::step(const Evidence& evidence, const StateBatch& recognised, std::span<const double> held,
-                                  double dt_s, StepSeconds& seconds) {
+void SamplingFilter::propagate(StateBatch& states, double dt_s, uint64_t stream) const {
+  motion_->propagate(states, hidden_.get(), {.dt_s = dt_s, .history = history_, .seed = seed_, .stream = stream});
+}
+
+// New particles are drawn about what was proposed, or the estimate, three times as wide as one frame's noise.
+void SamplingFilter::regenerate(StateBatch& states, std::span<const int> rows, const Proposed& proposed,
+                                uint64_t stream) const {
+  const std::vector<double> centre = estimate();
+  const Eigen::Index K = proposed.poses.rows();
+  std::vector<int> chosen;  // of unlike candidates, in proportion
+  if (K > 0 && !proposed.log_density.empty()) {
+    check(std::ssize(proposed.log_density) == K, "SamplingFilter: {} densities of {} candidates",
+          proposed.log_density.size(), K);
+    Rng rng(seed_ ^ kRegenerateSeed, stream, kResamplingParticle);
+    chosen = make_resampler("systematic").value()->resample(proposed.log_density, static_cast<int>(rows.size()), rng);
+  }
+  StateBatch poses(std::ssize(rows), std::ssize(centre));
+  for (Eigen::Index i = 0; i < poses.rows(); ++i) {
+    if (K == 0) {
+      poses.row(i) = Eigen::Map<const Eigen::RowVectorXd>(centre.data(), std::ssize(centre));
+    } else {
+      poses.row(i) = proposed.poses.row(chosen.empty() ? i % K : chosen[static_cast<size_t>(i)]);
+    }
+  }
+  StateBatch fresh = motion_->states_from_poses(poses);
+  std::vector<double> wide(motion_->deviation().begin(), motion_->deviation().end());
+  for (double& deviation : wide) deviation *= 3;
+  motion_->diffuse(fresh, wide, seed_ ^ kRegenerateSeed, stream);
+  for (size_t i = 0; i < rows.size(); ++i) states.row(rows[i]) = fresh.row(static_cast<Eigen::Index>(i));
+}
+
+void SamplingFilter::remember_estimate(double dt_s) {
+  const auto length = static_cast<size_t>(motion_->history_length());
+  if (length == 0) return;
+  for (MotionContext::Past& past : history_) past.seconds_ago += dt_s;
+  history_.push_back({0, estimate()});
+  if (history_.size() > length) history_.erase(history_.begin());
+}
+
+FilterReport SamplingFilter::step(std::span<const Observation> observations, const Proposed& proposed,
+                                  std::span<const double> held, double dt_s, StepSeconds& seconds) {
+  const std::unique_ptr<const PoseLikelihood::Evidence> evidence = likelihood_->prepare(observations);
   const Stopwatch whole;
   double propagating = 0, weighing = 0;
-  const Propagate propagate = [&](StateBatch& states, uint64_t stream) {
+  const Propagate move = [&](StateBatch& states, uint64_t stream) {
     const Stopwatch stopwatch;
-    motion_->propagate(states, dt_s, seed_, stream);
+    propagate(states, dt_s, stream);
     hold(states, held);
     propagating += stopwatch.seconds();
   };
   const LogLikelihood weigh = [&](const StateBatch& states, std::span<double> out) {
     const Stopwatch stopwatch;
-    likelihood_.log_likelihood(evidence, states, out);
+    std::ranges::fill(out, 0.0);
+    likelihood_->add_log_likelihood(*evidence, states, out);
     weighing += stopwatch.seconds();
   };
   const Diffuse diffuse = [&](StateBatch& states, std::span<const double> deviation, uint64_t stream) {
@@ -78,29 +124,15 @@ FilterReport SamplingFilter::step(const Evidence& evidence, const StateBatch& re
     hold(states, held);
     propagating += stopwatch.seconds();
   };
-  // New particles are drawn about what a network recognised, or the estimate, three times as wide as one frame's noise.
-  const std::vector<double> centre = estimate();
-  const Regenerate regenerate = [&](StateBatch& states, std::span<const int> rows, uint64_t stream) {
-    StateBatch poses(std::ssize(rows), std::ssize(centre));
-    for (Eigen::Index i = 0; i < poses.rows(); ++i) {
-      if (recognised.rows() > 0) {
-        poses.row(i) = recognised.row(i % recognised.rows());
-      } else {
-        poses.row(i) = Eigen::Map<const Eigen::RowVectorXd>(centre.data(), std::ssize(centre));
-      }
-    }
-    StateBatch fresh = motion_->states_from_poses(poses);
-    std::vector<double> wide(motion_->deviation().begin(), motion_->deviation().end());
-    for (double& deviation : wide) deviation *= 3;
-    motion_->diffuse(fresh, wide, seed_ ^ kRegenerateSeed, stream);
-    for (size_t i = 0; i < rows.size(); ++i) states.row(rows[i]) = fresh.row(static_cast<Eigen::Index>(i));
+  const Regenerate make_new = [&](StateBatch& states, std::span<const int> rows, uint64_t stream) {
+    regenerate(states, rows, proposed, stream);
   };
   FilterReport report = std::visit(
       [&](auto& filter) -> FilterReport {
         if constexpr (std::is_same_v<std::decay_t<decltype(filter)>, ParticleFilter>) {
-          return filter.step(propagate, weigh, regenerate);
+          return filter.step(move, weigh, make_new);
         } else if constexpr (std::is_same_v<std::decay_t<decltype(filter)>, AnnealedFilter>) {
-          return filter.step(propagate, diffuse, weigh, regenerate);
+          return filter.step(move, diffuse, weigh, make_new);
         } else {
           throw std::invalid_argument("SamplingFilter: step before start");
         }
@@ -109,25 +141,28 @@ FilterReport SamplingFilter::step(const Evidence& evidence, const StateBatch& re
   seconds.propagate += propagating;
   seconds.likelihood += weighing;
   seconds.resample += whole.seconds() - propagating - weighing;
+  remember_estimate(dt_s);
   return report;
 }
 
 FilterReport SamplingFilter::coast(double dt_s) {
   // What is held stays where each particle has it.
-  const Propagate propagate = [&](StateBatch& states, uint64_t stream) {
+  const Propagate move = [&](StateBatch& states, uint64_t stream) {
     const StateBatch before = states;
-    motion_->propagate(states, dt_s, seed_, stream);
+    propagate(states, dt_s, stream);
     for (const int d : held_columns()) states.col(d) = before.col(d);
   };
-  return std::visit(
+  FilterReport report = std::visit(
       [&](auto& filter) -> FilterReport {
         if constexpr (std::is_same_v<std::decay_t<decltype(filter)>, std::monostate>) {
           throw std::invalid_argument("SamplingFilter: coast before start");
         } else {
-          return filter.coast(propagate);
+          return filter.coast(move);
         }
       },
       filter_);
+  remember_estimate(dt_s);
+  return report;
 }
 
 const ParticleSet& SamplingFilter::particles() const {
@@ -136,24 +171,34 @@ const ParticleSet& SamplingFilter::particles() const {
   return std::get<ParticleFilter>(filter_).particles();
 }
 
-std::optional<FilterState> SamplingFilter::state() const {
-  if (const auto* annealed = std::get_if<AnnealedFilter>(&filter_)) return annealed->state();
-  if (const auto* plain = std::get_if<ParticleFilter>(&filter_)) return plain->state();
-  return std::nullopt;
+uint64_t SamplingFilter::num_steps() const {
+  if (const auto* annealed = std::get_if<AnnealedFilter>(&filter_)) return annealed->state().step;
+  if (const auto* plain = std::get_if<ParticleFilter>(&filter_)) return plain->state().step;
+  return 0;
 }
 
-void SamplingFilter::restore(std::optional<FilterState> state) {
+std::optional<SamplingFilter::State> SamplingFilter::state() const {
+  const auto* annealed = std::get_if<AnnealedFilter>(&filter_);
+  const auto* plain = std::get_if<ParticleFilter>(&filter_);
+  if (annealed == nullptr && plain == nullptr) return std::nullopt;
+  return State{annealed != nullptr ? annealed->state() : plain->state(), history_, hidden_ ? hidden_->state() : ""};
+}
+
+void SamplingFilter::restore(std::optional<State> state) {
   filter_.emplace<std::monostate>();
   if (!state) return;
-  const ParticleSet& particles = state->particles;
+  const ParticleSet& particles = state->filter.particles;
   check(particles.size() == options_.num_particles && std::ssize(particles.log_weights) == particles.size() &&
             particles.states.cols() == std::ssize(motion_->deviation()),
         "SamplingFilter: not a state of it: {} particles of {} numbers", particles.size(), particles.states.cols());
+  hidden_ = motion_->make_hidden(options_.num_particles);
+  if (hidden_) hidden_->restore(state->hidden);
+  history_ = std::move(state->history);
   make_filter(particles.states);
   if (auto* annealed = std::get_if<AnnealedFilter>(&filter_)) {
-    annealed->restore(std::move(*state));
+    annealed->restore(std::move(state->filter));
   } else {
-    std::get<ParticleFilter>(filter_).restore(std::move(*state));
+    std::get<ParticleFilter>(filter_).restore(std::move(state->filter));
   }
 }
 

@@ -23,8 +23,6 @@
 namespace silpose {
 namespace {
 
-// [guess] The mesh by which candidates are ranked.
-constexpr int kRankingRows = 1;
 // [guess] After coasting for longer than this the subject may be anywhere, and the next good mask starts over.
 constexpr double kLongestCoast_s = 1.0;
 
@@ -61,33 +59,30 @@ std::optional<std::pair<int, int>> paired_contacts(const RigProfile& profile) {
 struct Tracker::Impl {
   explicit Impl(const TrackerOptions& given) : options(given), sides(given.cameras.size()) {
     options.check();
-    const auto fine = level_of_detail(options.body, options.lod_vertices);
-    likelihoods.fine = std::make_shared<const CoverageLikelihood>(fine, options.cameras);
-    likelihoods.pose_prior = std::make_shared<const PosePrior>(fine, options.has_floor());
-    const auto coarse = level_of_detail(options.body, kRankingLevel);
+    body.fine = level_of_detail(options.body, options.lod_vertices);
+    body.coarse = level_of_detail(options.body, kRankingLevel);
+    body.likelihood =
+        std::make_shared<const CoverageLikelihood>(body.fine, options.cameras, kFittingRows, fitted_terms(options));
+    body.pose_prior = std::make_shared<const PosePrior>(body.fine, options.has_floor());
     for (const PinholeCamera& camera : options.cameras) {
       seen_by.emplace_back(options.body, camera);
-      expected_by.emplace_back(coarse, camera);
-      if (options.sampling() != nullptr) {
-        likelihoods.renderers.push_back(std::make_shared<const BatchRenderer>(fine, camera));
-      }
+      expected_by.emplace_back(body.coarse, camera);
     }
-    if (options.fitted() != nullptr) {
-      likelihoods.coarse = std::make_shared<const CoverageLikelihood>(coarse, options.cameras, kRankingRows);
+    filter = make_pose_filter(options, body);
+    for_start = start_proposal(options);
+    for_restart = options.proposal;
+    if (!for_restart) {
+      for_restart = std::make_shared<const CommonPoses>(options.body->skeleton, options.body->profile);
     }
-    filter = make_pose_filter(options, likelihoods);
-    for (size_t c = 0; c < options.cameras.size(); ++c) for_start.push_back(start_proposal(options, c));
-    if (!options.proposal)
-      options.proposal = std::make_shared<const CommonPoses>(options.body->skeleton, options.body->profile);
   }
 
-  // Starting poses for what is seen: the given one, or by descent; the last estimate competes, too.
-  std::vector<StartingPose> starting_poses(std::span<const Observation> observations) const {
+  // Starting poses for what is seen, `dt_s` after the last estimate: the given one, or by descent; the last estimate
+  // competes, too.
+  std::vector<StartingPose> starting_poses(std::span<const Observation> observations, double dt_s) const {
     if (options.initial_pose && last_pose.empty()) return {{*options.initial_pose, 0}};
     Rng rng(options.seed, static_cast<uint64_t>(steps));
-    const size_t camera = start_camera(observations);
-    const Proposal& proposal = started ? *options.proposal : *for_start[camera];
-    StateBatch candidates = proposal.propose(observations[camera], 0, rng);
+    const Proposal& proposal = started ? *for_restart : *for_start;
+    StateBatch candidates = proposal.propose({observations, options.cameras, last_pose, dt_s}, 0, rng).poses;
     if (!last_pose.empty()) {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
@@ -102,7 +97,7 @@ struct Tracker::Impl {
       search.share_fitted_finely = kReinitialiseShare;
       search.first_heading = kReinitialiseHeadings * num_reinitialisations;
     }
-    return initialise(*likelihoods.fine, *likelihoods.pose_prior, observations, candidates, search);
+    return initialise(*body.likelihood, *body.pose_prior, observations, candidates, search);
   }
 
   // Whether any camera shows something to track by, of the kind of evidence that is used.
@@ -224,7 +219,7 @@ struct Tracker::Impl {
         since_reinitialised_s < reinitialise_interval_s)
       return;
     const Stopwatch stopwatch;
-    std::vector<StartingPose> found = starting_poses(observations);
+    std::vector<StartingPose> found = starting_poses(observations, 0);
     std::erase_if(found, [&](const StartingPose& start) { return is_turned(start); });
     if (!found.empty()) filter->add(found);
     ++num_reinitialisations;
@@ -241,10 +236,10 @@ struct Tracker::Impl {
   }
 
   TrackerOptions options;
-  Likelihoods likelihoods;
+  TrackedBody body;
   std::vector<BatchRenderer> seen_by, expected_by;  // [C] the whole mesh, and a coarse one
   std::unique_ptr<PoseFilter> filter;
-  std::vector<std::shared_ptr<const Proposal>> for_start;  // [C]
+  std::shared_ptr<const Proposal> for_start, for_restart;
   std::vector<double> last_pose;
   bool started = false;
   int num_reinitialisations = 0;
@@ -280,7 +275,7 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
 
   if (seen && !t.started) {
     const Stopwatch stopwatch;
-    t.filter->start(t.starting_poses(observations));
+    t.filter->start(t.starting_poses(observations, dt_s));
     t.started = true;
     t.reinitialise_interval_s = kFirstReinitialise_s;
     t.since_reinitialised_s = 0;
@@ -308,13 +303,7 @@ StepReport Tracker::step(std::span<const Observation> given, int64_t frame_idx, 
 std::vector<Mask> Tracker::expected(double dt_s) const {
   const Impl& t = *impl_;
   if (!t.started || t.last_seen_ns != t.last_time_ns) return {};
-  std::vector<double> pose = t.last_pose;
-  const StateBatch& states = t.filter->particles().states;
-  if (t.options.fitted() != nullptr) {
-    const auto velocity = states.row(0).tail(std::ssize(pose));  // of the estimate, which is the best hypothesis
-    for (size_t d = 0; d < pose.size(); ++d) pose[d] += dt_s * velocity[static_cast<Eigen::Index>(d)];
-    t.options.body->skeleton.clamp(pose);
-  }
+  const std::vector<double> pose = t.filter->predict(dt_s);
   std::vector<Mask> silhouettes;
   for (const BatchRenderer& renderer : t.expected_by) silhouettes.push_back(renderer.silhouette(pose));
   return silhouettes;

@@ -92,8 +92,23 @@ void TrackerOptions::check() const {
   silpose::check(std::isfinite(size_deviation) && size_deviation >= 0 && size_deviation < 1,
                  "size deviation: {} is not a number from 0 to below 1", size_deviation);
   const auto num_dofs = static_cast<size_t>(body->skeleton.num_dofs());
+  for (const auto& likelihood : likelihoods) {
+    silpose::check(likelihood != nullptr, "likelihoods: one is missing");
+    silpose::check(std::cmp_equal(likelihood->body().skeleton.num_dofs(), num_dofs),
+                   "likelihoods: one is of a body of {} DOF, not {}", likelihood->body().skeleton.num_dofs(), num_dofs);
+    silpose::check(fitted() == nullptr || likelihood->can_linearise(),
+                   "likelihoods: the fitted mixture needs ones that can be linearised (PoseLikelihood::linearise)");
+  }
+  silpose::check(fitted() == nullptr || (!motion_model && !shape_metric && !make_backend),
+                 "motion model, shape metric and backend are for filters that sample, not for the fitted mixture");
   silpose::check(!initial_pose || initial_pose->size() == num_dofs, "initial pose: {} numbers for {} DOF",
                  initial_pose ? initial_pose->size() : 0, num_dofs);
+}
+
+std::vector<std::shared_ptr<const PoseLikelihood>> fitted_terms(const TrackerOptions& options) {
+  std::vector<std::shared_ptr<const PoseLikelihood>> terms = options.likelihoods;
+  std::erase_if(terms, [](const auto& likelihood) { return !likelihood->can_linearise(); });
+  return terms;
 }
 
 EvidenceKind start_evidence(const TrackerOptions& options) {
@@ -101,15 +116,8 @@ EvidenceKind start_evidence(const TrackerOptions& options) {
   return options.landmarks ? EvidenceKind::kBoth : EvidenceKind::kSilhouette;
 }
 
-size_t start_camera(std::span<const Observation> observations) {
-  for (size_t c = 0; c < observations.size(); ++c) {
-    if (!observations[c].keypoints_2d.empty() && !observations[c].box().empty()) return c;
-  }
-  return 0;
-}
-
-std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options, size_t camera_idx) {
-  if (options.landmarks) return std::make_shared<const LandmarkProposal>(options.body, options.cameras[camera_idx]);
+std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options) {
+  if (options.landmarks) return std::make_shared<const LandmarkProposal>(options.body);
   if (options.proposal) return options.proposal;
   return std::make_shared<const CommonPoses>(options.body->skeleton, options.body->profile);
 }

@@ -16,10 +16,20 @@
 #include "silpose/body/levels.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/likelihood/coverage_likelihood.h"
-#include "silpose/likelihood/silhouette_likelihood.h"
+#include "silpose/likelihood/pose_likelihood.h"
+#include "silpose/motion/motion_model.h"
 #include "silpose/motion/proposal.h"
+#include "silpose/render/render_backend.h"
+#include "silpose/shape/shape_metric.h"
 
 namespace silpose {
+
+// How sampling filters compare silhouettes.
+enum class Metric {
+  kPixelCount,  // pixels: set in one of both only
+  kCoverage,    // parts of pixels: |covered by one - covered by the other|, which motion of a tenth of a pixel changes.
+                // At a quarter of the resolution it still locates a body better.
+};
 
 enum class Estimate { kMean, kMode, kCluster };
 
@@ -68,8 +78,18 @@ struct TrackerOptions {
   bool landmarks = false;  // starts use keypoints, where there are any
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
-  // Candidates for the start, and for re-initialising the fitted mixture; absent: the common poses.
+  // Candidates for the start, for re-initialising the fitted mixture, and for particles that are regenerated from a
+  // network; absent: the common poses, and what the keypoints show.
   std::shared_ptr<const Proposal> proposal;
+
+  // What a program may add or replace; nothing, for what the other options say.
+  // Evidence besides silhouettes and keypoints, of bodies with the same degrees of freedom: log-likelihoods add up. The
+  // fitted mixture needs likelihoods that can be linearised. Instants without a usable mask coast all the same.
+  std::vector<std::shared_ptr<const PoseLikelihood>> likelihoods;
+  // Of sampling filters: in place of SamplingOptions::motion and ::metric, and what they draw with.
+  std::shared_ptr<const MotionModel> motion_model;
+  std::shared_ptr<const ShapeMetric> shape_metric;
+  MakeRenderBackend make_backend;
 
   // Null where the filter is of the other kind.
   [[nodiscard]] const FittedOptions* fitted() const { return std::get_if<FittedOptions>(&filter); }
@@ -88,15 +108,14 @@ const OptionTable<TrackerOptions>& tracker_option_table();
 const OptionTable<FittedOptions>& fitted_option_table();
 const OptionTable<SamplingOptions>& sampling_option_table();
 
+// Those of the options' likelihoods that fits use, which can be linearised. Starts are fitted whatever the filter.
+std::vector<std::shared_ptr<const PoseLikelihood>> fitted_terms(const TrackerOptions& options);
+
 // What starts are compared by.
 EvidenceKind start_evidence(const TrackerOptions& options);
 
 // Candidates for the start: fitted to landmarks where these are used, else the options' proposal, else the common
 // poses.
-std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options, size_t camera_idx);
-
-// The camera whose observation starts use: the first one with keypoints, else the first. Shapes: one observation per
-// camera.
-size_t start_camera(std::span<const Observation> observations);
+std::shared_ptr<const Proposal> start_proposal(const TrackerOptions& options);
 
 }  // namespace silpose

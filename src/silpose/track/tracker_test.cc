@@ -20,11 +20,11 @@ namespace {
 // The tube upright or bent, at 8 headings: what common poses are for a human.
 class TubeProposal : public Proposal {
  public:
-  StateBatch propose(const Observation&, int, Rng&) const override {
+  Proposed propose(const ProposalContext&, int, Rng&) const override {
     StateBatch states = StateBatch::Zero(3, 8);
     states(1, 5) = 0.5;
     states(2, 5) = -0.5;
-    return states;
+    return {states};
   }
 };
 
