@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 int main(int argc, char** argv) try {
@@ -34,7 +35,7 @@ int main(int argc, char** argv) try {
   backend->silhouettes(batch, image, masks);
   // Where only areas matter nothing has to be kept of the drawings, which is several times faster.
   std::vector<silpose::OutlineRenderer::Counts> counts(count);
-  backend->counts(batch, image, masks.front(), counts);
+  if (!backend->counts(batch, image, masks.front(), counts)) throw std::runtime_error("this backend does not count");
   for (size_t n = 0; n < count; ++n) fmt::print("{} {} {}\n", n, masks[n].count(), counts[n].both);
 } catch (const std::exception& failure) {
   fmt::print(stderr, "batch_silhouettes: {}\n", failure.what());

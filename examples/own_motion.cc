@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <silpose/silpose.h>
 
+#include <cmath>
 #include <exception>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -24,7 +26,8 @@ class Onward final : public silpose::MotionModel {
       const auto& last = context.history[1];
       const double share = context.dt_s / (before.seconds_ago - last.seconds_ago);
       for (size_t d = 0; d < last.pose.size(); ++d) {
-        states.col(static_cast<Eigen::Index>(d)).array() += share * (last.pose[d] - before.pose[d]);
+        const double moved = std::remainder(last.pose[d] - before.pose[d], 2 * std::numbers::pi);  // headings wrap
+        states.col(static_cast<Eigen::Index>(d)).array() += share * moved;
       }
     }
     noise_->propagate(states, nullptr, context);  // also keeps poses within the limits

@@ -20,8 +20,9 @@ using Propagate = std::function<void(StateBatch& states, uint64_t stream)>;
 using LogLikelihood = std::function<void(const StateBatch& states, std::span<double> log_likelihood)>;
 // Regenerates the given rows: at random, or by a proposal.
 using Regenerate = std::function<void(StateBatch& states, std::span<const int> rows, uint64_t stream)>;
-// Is called after every resampling, those between the layers of annealing too: particle n continues particle
-// ancestors[n], or is regenerated (kRegenerate). For what belongs to particles but is no row of numbers. [N]
+// Is called after every resampling, those between the layers of annealing too, for what belongs to particles but is no
+// row of numbers. Particle n continues particle ancestors[n], or is regenerated (kRegenerate). Of a crossover it is the
+// first parent. [N]
 using Inherit = std::function<void(std::span<const int> ancestors)>;
 
 struct FilterReport {

@@ -71,7 +71,8 @@ TEST_F(CalibrationFile, ReadsACameraAndShiftsPixelsByHalf) {
 
 TEST_F(CalibrationFile, RoundTripKeepsEverything) {
   std::vector<PinholeCamera> cameras = {look_at_camera(640, 480, 700, {1, 1.7, 5}, {0, 1, 0}),
-                                        default_camera(1920, 1080), look_at_camera(1000, 1002, 900, {-3, 2, -4}, {0, 0, 0})};
+                                        default_camera(1920, 1080),
+                                        look_at_camera(1000, 1002, 900, {-3, 2, -4}, {0, 0, 0})};
   cameras[0].name = "zulu \"north\"\\\n";
   cameras[0].distortion = {-0.1, 0.02, 0.001, -0.002, 0.3};
   cameras[1].name = "alpha";

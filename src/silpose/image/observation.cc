@@ -15,6 +15,7 @@ void check_sizes(const Observation& observation) {
   if (!observation.confidence.empty()) {
     check_size("confidence", observation.confidence.width(), observation.confidence.height());
   }
+  if (observation.depth) check_size("depth", observation.depth->width(), observation.depth->height());
   if (observation.ignored) check_size("ignored pixels", observation.ignored->width(), observation.ignored->height());
 }
 

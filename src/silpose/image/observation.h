@@ -29,10 +29,11 @@ struct Observation {
   Mask mask;                                     // [H, W] the subject's silhouette
   ByteImage confidence = {};                     // [H, W] of each pixel, 255: certain; empty: certain everywhere
   std::shared_ptr<const Mask> ignored = {};      // [H, W] pixels of which nothing is known; null: none
-  std::shared_ptr<const DepthImage> depth = {};  // [H, W]; null: not measured
+  std::shared_ptr<const DepthImage> depth = {};  // [H, W]; null: none. Segmenters give none, programs may
   std::vector<Keypoint2D> keypoints_2d = {};     // of the body; empty from most segmenters
   Keypoints3D keypoints_3d = {};                 // the same in space
   Trust trust = {};
+  int64_t time_ns = 0;  // of the image
 
   // The smallest box around the mask; empty where nothing was found.
   [[nodiscard]] Box box() const { return mask.bounding_box(); }

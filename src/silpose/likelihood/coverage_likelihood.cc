@@ -92,16 +92,13 @@ std::span<const PinholeCamera> CoverageLikelihood::cameras() const { return impl
 
 CoverageEvidence CoverageLikelihood::evidence_of(std::span<const Observation> observations, Blur widest, Blur narrowest,
                                                  EvidenceKind kind) const {
-  check(observations.size() == cameras().size(), "CoverageLikelihood: {} observations for {} cameras",
-        observations.size(), cameras().size());
+  check_number(observations, cameras().size());
   CoverageEvidence evidence;
   evidence.silhouettes = kind != EvidenceKind::kKeypoints;
   for (size_t c = 0; c < observations.size(); ++c) {
     const Observation& observation = observations[c];
     const PinholeCamera& camera = cameras()[c];
-    check(observation.mask.width() == camera.width && observation.mask.height() == camera.height,
-          "CoverageLikelihood: mask of {}x{} for camera '{}' of {}x{}", observation.mask.width(),
-          observation.mask.height(), camera.name, camera.width, camera.height);
+    check_fits(observation, camera);
     CoverageEvidence::View& view = evidence.views.emplace_back();
     evidence.noise.push_back(0);
     const Box box = observation.box();
@@ -148,6 +145,13 @@ NormalEquations CoverageLikelihood::linearise(const Evidence& evidence, std::spa
 
 namespace {
 
+// Errors: throws std::invalid_argument for a blur that was not prepared.
+const CoverageEvidence::Raster& raster_of(const CoverageEvidence::View& view, Blur blur) {
+  const CoverageEvidence::Raster& raster = view.rasters[static_cast<size_t>(blur)];
+  check(raster.cell > 0, "CoverageLikelihood: evidence without a blur of {}", kBlurSigma[static_cast<size_t>(blur)]);
+  return raster;
+}
+
 SampledRows rows_of(const PinholeCamera& camera, int cell, int rows_per_cell) {
   const float step = static_cast<float>(cell) / static_cast<float>(rows_per_cell);
   return {
@@ -178,7 +182,7 @@ std::vector<double> CoverageLikelihood::residuals(const CoverageEvidence& eviden
   for (size_t c = 0; c < impl_->views.size(); ++c) {
     const CoverageEvidence::View& evident = evidence.views[c];
     if (evident.trust <= 0) continue;
-    const CoverageEvidence::Raster& raster = evident.rasters[static_cast<size_t>(blur)];
+    const CoverageEvidence::Raster& raster = raster_of(evident, blur);
     (void)draw(c, raster, pose, s);
     residual[c] = outline_scale(raster.cell) * s.difference.finish();
   }
@@ -212,7 +216,7 @@ NormalEquations CoverageLikelihood::linearise(const CoverageEvidence& evidence, 
     }
     if (!evidence.silhouettes) continue;
     const Impl::View& view = impl_->views[c];
-    const CoverageEvidence::Raster& raster = evident.rasters[static_cast<size_t>(blur)];
+    const CoverageEvidence::Raster& raster = raster_of(evident, blur);
     if (draw(c, raster, pose, s)) {
       const float step = static_cast<float>(raster.cell) / static_cast<float>(impl_->rows_per_cell);
       const float by = step / (static_cast<float>(raster.cell) * static_cast<float>(raster.cell));

@@ -1,5 +1,6 @@
 // DepthLikelihood: how well poses explain the depth that cameras measured on the subject: the normalised sum of squared
-// differences of depth images. Observations without depth add nothing.
+// differences of depth images. Observations without depth add nothing; ignored pixels, and those of the mask without
+// depth, do not count.
 // Source: cormier2019 eq. 2.12 (references.bib).
 // Threads: as PoseLikelihood.
 #pragma once
@@ -14,7 +15,7 @@
 namespace silpose {
 
 struct DepthOptions {
-  double sharpness = 40;   // log-likelihood of a pose that shares no pixel with the subject is about -sharpness
+  double sharpness = 40;   // log-likelihood of a pose that shows nothing is -sharpness
   double missing_m = 0.3;  // [guess] a surface in one of both images only counts like one that is so far off
   int resolution = 64;     // raster pixels along the longer side of the observed silhouette
   // Errors: throws std::invalid_argument.

@@ -25,12 +25,13 @@ KeypointLikelihood::KeypointLikelihood(std::shared_ptr<const BodyModel> body, st
 
 std::unique_ptr<const PoseLikelihood::Evidence> KeypointLikelihood::prepare(
     std::span<const Observation> observations) const {
-  check(observations.size() == cameras_.size(), "KeypointLikelihood: {} observations for {} cameras",
-        observations.size(), cameras_.size());
+  check_number(observations, cameras_.size());
   const EvidenceKind kind = options_.alone ? EvidenceKind::kKeypoints : EvidenceKind::kBoth;
   auto prepared = std::make_unique<Prepared>();
   for (size_t c = 0; c < cameras_.size(); ++c) {
     const Observation& observation = observations[c];
+    check_fits(observation, cameras_[c]);
+    if (observation.ignored && observation.known(observation.mask).count() == 0) continue;
     if (observation.trust.nothing_found || observation.box().empty() || observation.trust.overall <= 0) continue;
     if (auto term = make_keypoint_term(*body_, cameras_[c], observation, kind, options_.places)) {
       prepared->views.push_back({observation.trust.overall, std::move(term)});

@@ -1,9 +1,9 @@
-// PoseLikelihood: how well poses explain what cameras saw: what a filter weighs its candidates by. Silhouettes
+// PoseLikelihood: how well poses explain what cameras saw. A filter weighs its candidates by it. Silhouettes
 // (silhouette_likelihood.h, coverage_likelihood.h), keypoints and depth are such likelihoods, a sum of some is one
 // (sum_likelihood.h), and a program may add its own (TrackerOptions::likelihoods).
 //
 // Contract: log-likelihoods are finite or minus infinity, up to a constant that is the same for every pose. A pose's
-// value depends neither on the rest of the batch nor on the number of threads. Observations that found nothing add
+// value depends neither on the rest of the batch nor on the number of threads. An observation that found nothing adds
 // nothing.
 // Threads: constant after construction; any thread may call.
 #pragma once
@@ -15,6 +15,7 @@
 
 #include "silpose/body/body_model.h"
 #include "silpose/filter/state_batch.h"
+#include "silpose/geometry/camera.h"
 #include "silpose/image/observation.h"
 
 namespace silpose {
@@ -32,7 +33,8 @@ class PoseLikelihood {
 
   [[nodiscard]] virtual const BodyModel& body() const = 0;
 
-  // The observations of one instant in the form that comparisons need. Shapes: one observation per camera.
+  // The observations of one instant in the form that comparisons need. Shapes: one observation per camera. Instants may
+  // come in any order, and several at a time; Observation::time_ns says which one it is.
   // Errors: throws std::invalid_argument where they do not fit the cameras.
   class Evidence {
    public:
@@ -57,6 +59,11 @@ const OwnEvidence& own_evidence(const PoseLikelihood::Evidence& evidence) {
   if (const auto* own = dynamic_cast<const OwnEvidence*>(&evidence)) return *own;
   throw std::invalid_argument("PoseLikelihood: evidence that another likelihood prepared");
 }
+
+// Errors: throws std::invalid_argument unless there is one observation per camera; unless an observation's mask, and
+// what comes with it, has its camera's size.
+void check_number(std::span<const Observation> observations, size_t num_cameras);
+void check_fits(const Observation& observation, const PinholeCamera& camera);
 
 // Errors: throws std::invalid_argument unless there are N outputs for N states of at least D columns.
 void check_batch(const BodyModel& body, const StateBatch& states, std::span<const double> out);

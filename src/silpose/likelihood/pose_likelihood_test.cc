@@ -194,6 +194,12 @@ TEST_P(PoseLikelihoodContract, RefusesWrongShapesAndForeignEvidence) {
   EXPECT_THROW(likelihood_->add_log_likelihood(*evidence, batch({truth_}), two), std::invalid_argument);
   EXPECT_THROW(likelihood_->add_log_likelihood(*evidence, StateBatch::Zero(2, 3), two), std::invalid_argument);
   EXPECT_THROW((void)likelihood_->prepare({}), std::invalid_argument);
+  std::vector<Observation> small = observations_;
+  small[1].mask = Mask(32, 24);
+  EXPECT_THROW((void)likelihood_->prepare(small), std::invalid_argument);
+  std::vector<Observation> shallow = observations_;
+  shallow[0].depth = std::make_shared<const DepthImage>(8, 8);
+  EXPECT_THROW((void)likelihood_->prepare(shallow), std::invalid_argument);
   struct Foreign : PoseLikelihood::Evidence {};
   std::vector<double> one(1);
   EXPECT_THROW(likelihood_->add_log_likelihood(Foreign(), batch({truth_}), one), std::invalid_argument);
@@ -252,6 +258,36 @@ TEST_F(SeenHumanTest, ATermOfTheCoverageLikelihoodAddsUp) {
   const Made sampled = pixels(body_, cameras);
   EXPECT_THROW(CoverageLikelihood(body_, cameras, kFittingRows, {sampled}), std::invalid_argument);
   EXPECT_THROW(CoverageLikelihood(body_, cameras, kFittingRows, {nullptr}), std::invalid_argument);
+}
+
+// Half of the mask has no depth and a quarter of the image is ignored: what is left decides, as if nothing were amiss.
+TEST_F(SeenHumanTest, DepthThatIsNotKnownDoesNotCount) {
+  camera_ = look_at_camera(320, 240, 300, {0, 1.2, 3.5}, {0, 0.9, 0});
+  body_ = human_for_test(800);
+  const std::vector<double> truth = standing(0.3);
+  const auto likelihood = depths(body_, {camera_});
+  Observation seen{render_silhouette(*body_, camera_, truth)};
+  const Image<float> depth = draw_depth(camera_, skin_vertices(*body_, truth), body_->rest.faces);
+  DepthImage measured(320, 240);
+  Mask ignored(320, 240);
+  const Box box = seen.box();
+  for (int y = 0; y < 240; ++y) {
+    for (int x = 0; x < 320; ++x) {
+      if (x >= box.x + box.width / 2) continue;
+      measured.at(x, y) = static_cast<uint16_t>(std::lround(1000 * depth.at(x, y)));
+      if (y >= box.y + box.height / 2) ignored.set(x, y), measured.at(x, y) = 500;
+    }
+  }
+  seen.depth = std::make_shared<const DepthImage>(measured);
+  seen.ignored = std::make_shared<const Mask>(ignored);
+  StateBatch state(1, std::ssize(truth));
+  state.row(0) = Eigen::Map<const Eigen::RowVectorXd>(truth.data(), state.cols());
+  double at_truth = 0, off = 0;
+  likelihood->add_log_likelihood(*likelihood->prepare({&seen, 1}), state, {&at_truth, 1});
+  state(0, dof("root_tz")) += 0.3;
+  likelihood->add_log_likelihood(*likelihood->prepare({&seen, 1}), state, {&off, 1});
+  EXPECT_GT(at_truth, -4);  // of 40: outlines of another raster
+  EXPECT_LT(off, at_truth - 10);
 }
 
 TEST_F(SeenHumanTest, ASumNeedsPartsOfOneBody) {

@@ -11,7 +11,8 @@ namespace silpose {
 namespace {
 
 constexpr double kMostPixels = 1 << 29;  // [definition] of a raster on which silhouettes are drawn
-constexpr size_t kMostMasks = 256;       // [guess] drawn at a time by metrics that look at them: 1 MB of 180 x 180 each
+// [guess] Of the silhouettes that are drawn at a time for metrics that look at them: memory that a laptop has.
+constexpr size_t kMostBytes = 64 << 20;
 
 }  // namespace
 
@@ -55,28 +56,22 @@ Window SilhouetteLikelihood::window_of_comparison(const Box& box, const PinholeC
 
 SilhouetteLikelihood::View SilhouetteLikelihood::view_of(const Observation& observation,
                                                          const PinholeCamera& camera) const {
-  check(observation.mask.width() == camera.width && observation.mask.height() == camera.height,
-        "SilhouetteLikelihood: mask of {}x{} for camera '{}' of {}x{}", observation.mask.width(),
-        observation.mask.height(), camera.name, camera.width, camera.height);
   const Box box = observation.box();
   if (observation.trust.nothing_found || box.empty()) return {};
   View view{.trust = observation.trust.overall, .window = window_of_comparison(box, camera)};
   const Mask* ignored = options_.comparison == Comparison::kImage ? observation.ignored.get() : nullptr;
-  if (ignored != nullptr) check_sizes(observation);
+  if (ignored != nullptr && observation.known(observation.mask).count() == 0) return {};
   view.observed = metric_->describe(observation.mask, ignored, view.window);
-  if (const auto* areas = dynamic_cast<const AreaMetric::Described*>(view.observed.get());
-      areas != nullptr && areas->area == 0) {
-    return {};  // too small to be seen on this raster, or all of it is ignored
-  }
+  if (view.observed->is_empty()) return {};
   return view;
 }
 
 std::unique_ptr<const PoseLikelihood::Evidence> SilhouetteLikelihood::prepare(
     std::span<const Observation> observations) const {
-  check(observations.size() == backends_.size(), "SilhouetteLikelihood: {} observations for {} cameras",
-        observations.size(), backends_.size());
+  check_number(observations, backends_.size());
   auto prepared = std::make_unique<Prepared>();
   for (size_t c = 0; c < observations.size(); ++c) {
+    check_fits(observations[c], backends_[c]->camera());
     prepared->views.push_back(view_of(observations[c], backends_[c]->camera()));
   }
   return prepared;
@@ -85,8 +80,9 @@ std::unique_ptr<const PoseLikelihood::Evidence> SilhouetteLikelihood::prepare(
 // By counting while drawing; false where the metric or the backend cannot.
 bool SilhouetteLikelihood::count(size_t camera_idx, const View& view, const BatchView& poses,
                                  std::span<double> out) const {
-  const auto* observed = dynamic_cast<const AreaMetric::Described*>(view.observed.get());
-  if (observed == nullptr) return false;
+  const auto* metric = dynamic_cast<const AreaMetric*>(metric_.get());
+  if (metric == nullptr) return false;
+  const auto& observed = dynamic_cast<const AreaMetric::Described&>(*view.observed);
   const Framing framing{view.window, options_.comparison == Comparison::kCropped};
   const auto count_against = [&](const Mask& mask, const ByteImage& coverage,
                                  std::vector<OutlineRenderer::Counts>& counts) {
@@ -94,14 +90,15 @@ bool SilhouetteLikelihood::count(size_t camera_idx, const View& view, const Batc
                             : backends_[camera_idx]->coverages(poses, framing, coverage, counts);
   };
   std::vector<OutlineRenderer::Counts> counts(out.size());
-  if (!count_against(observed->mask, observed->coverage, counts)) return false;
-  if (observed->has_ignored()) {
+  if (!count_against(observed.mask, observed.coverage, counts)) return false;
+  if (observed.has_ignored()) {
     std::vector<OutlineRenderer::Counts> unseen(out.size());
-    count_against(observed->ignored, observed->ignored_coverage, unseen);
+    check(count_against(observed.ignored, observed.ignored_coverage, unseen),
+          "SilhouetteLikelihood: a backend that counts only sometimes");
     for (size_t n = 0; n < out.size(); ++n) counts[n].model -= unseen[n].both;
   }
   for (size_t n = 0; n < out.size(); ++n) {
-    out[n] = AreaMetric::distance({observed->area, counts[n].model, counts[n].both});
+    out[n] = metric->distance({observed.area, counts[n].model, counts[n].both});
   }
   return true;
 }
@@ -110,9 +107,11 @@ void SilhouetteLikelihood::distances_of(size_t camera_idx, const View& view, con
                                         std::span<double> out) const {
   if (count(camera_idx, view, poses, out)) return;
   const Framing framing{metric_->raster(view.window), options_.comparison == Comparison::kCropped};
+  const size_t bytes = static_cast<size_t>(framing.window.width) * static_cast<size_t>(framing.window.height) / 8 + 1;
+  const size_t most = std::max<size_t>(1, kMostBytes / bytes);
   std::vector<Mask> masks;
-  for (size_t begin = 0; begin < poses.num_poses; begin += kMostMasks) {
-    const size_t num = std::min(kMostMasks, poses.num_poses - begin);
+  for (size_t begin = 0; begin < poses.num_poses; begin += most) {
+    const size_t num = std::min(most, poses.num_poses - begin);
     masks.resize(num);
     backends_[camera_idx]->silhouettes({poses.data + begin * poses.stride, num, poses.num_dofs, poses.stride}, framing,
                                        masks);

@@ -30,6 +30,7 @@ std::unique_ptr<const PoseLikelihood::Evidence> SumLikelihood::prepare(
 void SumLikelihood::add_log_likelihood(const Evidence& evidence, const StateBatch& states,
                                        std::span<double> out) const {
   const auto& of_parts = own_evidence<Prepared>(evidence).of_parts;
+  check(of_parts.size() == parts_.size(), "SumLikelihood: evidence of {} parts for {}", of_parts.size(), parts_.size());
   for (size_t i = 0; i < parts_.size(); ++i) parts_[i]->add_log_likelihood(*of_parts[i], states, out);
 }
 
@@ -39,6 +40,7 @@ bool SumLikelihood::can_linearise() const {
 
 NormalEquations SumLikelihood::linearise(const Evidence& evidence, std::span<const double> pose) const {
   const auto& of_parts = own_evidence<Prepared>(evidence).of_parts;
+  check(of_parts.size() == parts_.size(), "SumLikelihood: evidence of {} parts for {}", of_parts.size(), parts_.size());
   NormalEquations sum = parts_.front()->linearise(*of_parts.front(), pose);
   for (size_t i = 1; i < parts_.size(); ++i) {
     const NormalEquations part = parts_[i]->linearise(*of_parts[i], pose);

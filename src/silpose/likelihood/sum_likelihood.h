@@ -1,4 +1,4 @@
-// SumLikelihood: several likelihoods as one: kinds of evidence that are independent given the pose.
+// SumLikelihood: several likelihoods as one, for kinds of evidence that are independent given the pose.
 // Threads: as PoseLikelihood.
 #pragma once
 

@@ -48,6 +48,17 @@ class MotionModelContract : public testing::TestWithParam<const char*> {
  protected:
   Skeleton skeleton_ = human();
   std::unique_ptr<MotionModel> model_ = make_motion_model(GetParam(), skeleton_, profile_of(skeleton_)).value();
+
+  // With hidden states that are made for this batch size.
+  void propagate(StateBatch& states, const MotionContext& context) {
+    if (hidden_size_ != states.rows()) hidden_ = model_->make_hidden(static_cast<int>(states.rows()));
+    hidden_size_ = states.rows();
+    model_->propagate(states, hidden_.get(), context);
+  }
+
+ private:
+  std::unique_ptr<HiddenStates> hidden_;
+  Eigen::Index hidden_size_ = -1;
 };
 
 TEST_P(MotionModelContract, StatesStartWithThePose) {
@@ -62,7 +73,7 @@ TEST_P(MotionModelContract, StatesStartWithThePose) {
 TEST_P(MotionModelContract, LimitsAlwaysHold) {
   StateBatch states = model_->states_from_poses(copies(skeleton_.denormalise(std::vector(37, 1.0)), 300));
   for (uint64_t step = 0; step < 40; ++step) {
-    model_->propagate(states, nullptr, {.dt_s = 0.2, .seed = 1, .stream = step});
+    propagate(states, {.dt_s = 0.2, .seed = 1, .stream = step});
     ASSERT_TRUE(within_limits(skeleton_, states)) << step;
     ASSERT_TRUE(states.allFinite());
   }
@@ -73,7 +84,7 @@ TEST_P(MotionModelContract, LimitsAlwaysHold) {
 TEST_P(MotionModelContract, NoTimeMovesNothing) {
   const StateBatch before = model_->states_from_poses(copies(middle(skeleton_), 3));
   StateBatch states = before;
-  model_->propagate(states, nullptr, {.dt_s = 0, .seed = 1, .stream = 1});
+  propagate(states, {.dt_s = 0, .seed = 1, .stream = 1});
   EXPECT_TRUE(states.isApprox(before, 1e-12));
   model_->diffuse(states, std::vector(static_cast<size_t>(model_->state_size()), 0.0), 1, 1);
   EXPECT_TRUE(states.isApprox(before, 1e-12));
@@ -83,7 +94,7 @@ TEST_P(MotionModelContract, SpreadDoesNotDependOnTheFrameRate) {
   const auto spread_after_a_tenth = [&](int num_steps) {
     StateBatch states = model_->states_from_poses(copies(middle(skeleton_), 4000));
     for (int step = 0; step < num_steps; ++step) {
-      model_->propagate(states, nullptr, {.dt_s = 0.1 / num_steps, .seed = 7, .stream = static_cast<uint64_t>(step)});
+      propagate(states, {.dt_s = 0.1 / num_steps, .seed = 7, .stream = static_cast<uint64_t>(step)});
     }
     return weighted_deviation(states, std::vector(4000, 1.0));
   };
@@ -95,8 +106,7 @@ TEST_P(MotionModelContract, IsTheSameOnAnyNumberOfThreads) {
   const auto run = [&](int num_threads) {
     const ThreadLimit limit(num_threads);
     StateBatch states = model_->states_from_poses(copies(middle(skeleton_), 500));
-    for (uint64_t step = 0; step < 3; ++step)
-      model_->propagate(states, nullptr, {.dt_s = 1.0 / 30, .seed = 3, .stream = step});
+    for (uint64_t step = 0; step < 3; ++step) propagate(states, {.dt_s = 1.0 / 30, .seed = 3, .stream = step});
     model_->diffuse(states, model_->deviation(), 3, 4);
     return states;
   };
@@ -118,10 +128,10 @@ TEST_P(MotionModelContract, ColumnsOfADofAreItsOwn) {
 
 TEST_P(MotionModelContract, RefusesBadInput) {
   StateBatch states = model_->states_from_poses(copies(middle(skeleton_), 2));
-  EXPECT_THROW(model_->propagate(states, nullptr, {.dt_s = -1, .seed = 1, .stream = 1}), std::invalid_argument);
+  EXPECT_THROW(propagate(states, {.dt_s = -1, .seed = 1, .stream = 1}), std::invalid_argument);
   EXPECT_THROW(model_->diffuse(states, std::vector{1.0}, 1, 1), std::invalid_argument);
   StateBatch narrow = StateBatch::Zero(2, 3);
-  EXPECT_THROW(model_->propagate(narrow, nullptr, {.dt_s = 0.1, .seed = 1, .stream = 1}), std::invalid_argument);
+  EXPECT_THROW(propagate(narrow, {.dt_s = 0.1, .seed = 1, .stream = 1}), std::invalid_argument);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, MotionModelContract, testing::Values("diffusion", "first-order-augmented"),

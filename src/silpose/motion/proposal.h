@@ -3,8 +3,9 @@
 //
 // Proposals are used at the start, where a track is found again, and for the particles that a filter regenerates.
 //
-// Contract: the candidates are whole poses within the skeleton's limits. Where the root is need not be right: starts
-// place candidates on the mask. The same context and Rng give the same candidates.
+// Contract: the candidates are whole poses within the skeleton's limits, none where nothing is recognised. Where the
+// root is need not be right at starts, which place candidates on the mask; regenerated particles are drawn about
+// candidates as they are. The same context and Rng give the same candidates.
 //
 // Threads: proposals are constant; any thread may call.
 #pragma once
@@ -13,6 +14,7 @@
 #include <vector>
 
 #include "silpose/base/rng.h"
+#include "silpose/body/skeleton.h"
 #include "silpose/filter/state_batch.h"
 #include "silpose/geometry/camera.h"
 #include "silpose/image/observation.h"
@@ -33,6 +35,10 @@ struct Proposed {
   // that are drawn from candidates are drawn in proportion.
   std::vector<double> log_density = {};
 };
+
+// Errors: throws std::invalid_argument unless there are poses [K, D] of finite numbers, with K densities or none. A
+// proposal without poses passes.
+void check_proposed(const Proposed& proposed, const Skeleton& skeleton);
 
 class Proposal {
  public:

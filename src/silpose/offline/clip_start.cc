@@ -73,6 +73,7 @@ size_t best_explained(const TrackerOptions& options, const JudgedClip& clip, con
   const auto body = level_of_detail(options.body, options_of_pass(options).lod_vertices);
   const CoverageLikelihood likelihood(body, options.cameras, kFittingRows, fitted_terms(options));
   const std::shared_ptr<const Proposal> proposal = start_proposal(options);
+  const CommonPoses common_poses(options.body->skeleton, options.body->profile);
   const PosePrior pose_prior(body, options.has_floor());
   double best = -std::numeric_limits<double>::infinity();
   size_t chosen = starts.front();
@@ -81,8 +82,10 @@ size_t best_explained(const TrackerOptions& options, const JudgedClip& clip, con
     if (!proceed()) break;
     Rng rng(options.seed, t);
     const auto& seen = clip[t].observations;
-    const StateBatch candidates = proposal->propose({seen, options.cameras}, 0, rng).poses;
-    const auto found = initialise(likelihood, pose_prior, seen, candidates, search);
+    Proposed proposed = proposal->propose({seen, options.cameras}, 0, rng);
+    check_proposed(proposed, options.body->skeleton);
+    if (proposed.poses.rows() == 0) proposed = common_poses.propose({seen, options.cameras}, 0, rng);
+    const auto found = initialise(likelihood, pose_prior, seen, proposed.poses, search);
     if (found.front().log_likelihood > best) best = found.front().log_likelihood, chosen = t;
   }
   return chosen;

@@ -14,6 +14,12 @@
 namespace silpose {
 namespace {
 
+void check_size(const Framing& framing, int width, int height) {
+  check(width == framing.window.width && height == framing.window.height,
+        "RenderBackend: {}x{} observed for a window of {}x{}", width, height, framing.window.width,
+        framing.window.height);
+}
+
 class CpuBackend final : public RenderBackend {
  public:
   CpuBackend(const std::shared_ptr<const BodyModel>& body, const PinholeCamera& camera)
@@ -34,6 +40,7 @@ class CpuBackend final : public RenderBackend {
   }
   bool counts(const BatchView& poses, const Framing& framing, const Mask& observed,
               std::span<OutlineRenderer::Counts> out) const override {
+    check_size(framing, observed.width(), observed.height());
     if (framing.cropped) {
       silhouettes_.counts_cropped(poses, observed, out);
     } else {
@@ -43,6 +50,7 @@ class CpuBackend final : public RenderBackend {
   }
   bool coverages(const BatchView& poses, const Framing& framing, const ByteImage& observed,
                  std::span<OutlineRenderer::Counts> out) const override {
+    check_size(framing, observed.width(), observed.height());
     if (framing.cropped) {
       silhouettes_.coverages_cropped(poses, observed, out);
     } else {

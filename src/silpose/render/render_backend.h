@@ -1,5 +1,5 @@
-// RenderBackend: draws a body before one camera for batches of poses. What likelihoods are made of; a GPU is another
-// implementation.
+// RenderBackend: draws a body before one camera for batches of poses. Likelihoods compare what it draws with what was
+// observed.
 //
 // Contract: silhouettes are those of the plain reference (silhouette.h) but for the rounding of projected vertices to
 // 1/256 raster pixel; depths those of draw_depth() (shaded.h) but for single precision. A pose with a number that is
@@ -34,6 +34,7 @@ class RenderBackend {
  public:
   virtual ~RenderBackend() = default;
 
+  // The object that it was made with.
   [[nodiscard]] virtual const BodyModel& body() const = 0;
   [[nodiscard]] virtual const PinholeCamera& camera() const = 0;
 
@@ -45,14 +46,14 @@ class RenderBackend {
   virtual void depths(const BatchView& poses, const Window& window, std::span<float> out) const = 0;
 
   // Fused: the pixels of each silhouette, and those that it shares with `observed`, which has the window's size.
-  virtual bool counts(const BatchView& poses, const Framing& framing, const Mask& observed,
-                      std::span<OutlineRenderer::Counts> out) const;
+  [[nodiscard]] virtual bool counts(const BatchView& poses, const Framing& framing, const Mask& observed,
+                                    std::span<OutlineRenderer::Counts> out) const;
   // The same in samples (shape/window.h). `observed`: 0 to kFullCoverage, of the window's size.
-  virtual bool coverages(const BatchView& poses, const Framing& framing, const ByteImage& observed,
-                         std::span<OutlineRenderer::Counts> out) const;
+  [[nodiscard]] virtual bool coverages(const BatchView& poses, const Framing& framing, const ByteImage& observed,
+                                       std::span<OutlineRenderer::Counts> out) const;
   // depth_ssd() (shape/distance.h) of each pose's depths and those observed, of the window's size. Shapes: out [N].
-  virtual bool depth_distances(const BatchView& poses, const Window& window, const Image<float>& observed,
-                               double missing_m, std::span<double> out) const;
+  [[nodiscard]] virtual bool depth_distances(const BatchView& poses, const Window& window, const Image<float>& observed,
+                                             double missing_m, std::span<double> out) const;
 };
 
 // Makes the backend of a body before a camera.

@@ -43,6 +43,16 @@ class RenderBackendContract : public testing::TestWithParam<Case> {
   BatchView batch(const std::vector<double>& poses) const {
     return {poses.data(), poses.size() / num_dofs_, num_dofs_, num_dofs_};
   }
+  static ByteImage coverage_of(const Mask& samples) {
+    ByteImage coverage(samples.width() / kCoverageSamples, samples.height() / kCoverageSamples);
+    for (int y = 0; y < samples.height(); ++y) {
+      for (int x = 0; x < samples.width(); ++x) {
+        uint8_t& of_pixel = coverage.at(x / kCoverageSamples, y / kCoverageSamples);
+        of_pixel = static_cast<uint8_t>(of_pixel + samples.get(x, y));
+      }
+    }
+    return coverage;
+  }
   std::vector<Mask> drawn(const RenderBackend& backend, const Framing& framing) const {
     std::vector<Mask> masks(kNumPoses);
     backend.silhouettes(batch(), framing, masks);
@@ -93,15 +103,17 @@ TEST_P(RenderBackendContract, WhatIsFusedGivesWhatDrawingGives) {
       EXPECT_EQ(counts[n].both, and_count(masks[n], masks[3])) << n;
     }
   }
-  const Framing samples{sample_window(window_)};
-  const auto fine = drawn(*backend_, samples);
-  ByteImage covered(window_.width, window_.height);
-  for (uint8_t& value : covered.pixels()) value = kFullCoverage;
-  std::vector<OutlineRenderer::Counts> counts(kNumPoses);
-  if (backend_->coverages(batch(), {window_}, covered, counts)) {
+  for (const bool cropped : {false, true}) {
+    const auto fine = drawn(*backend_, {sample_window(window_), cropped});
+    const ByteImage covered = coverage_of(fine[3]);
+    std::vector<OutlineRenderer::Counts> counts(kNumPoses);
+    if (!backend_->coverages(batch(), {window_, cropped}, covered, counts)) continue;
     for (size_t n = 0; n < fine.size(); ++n) {
+      const ByteImage own = coverage_of(fine[n]);
+      int64_t both = 0;
+      for (size_t i = 0; i < own.pixels().size(); ++i) both += std::min(own.pixels()[i], covered.pixels()[i]);
       EXPECT_EQ(counts[n].model, fine[n].count()) << n;
-      EXPECT_EQ(counts[n].both, counts[n].model) << n;
+      EXPECT_EQ(counts[n].both, both) << n;
     }
   }
   Image<float> observed(window_.width, window_.height);
@@ -146,6 +158,12 @@ TEST_P(RenderBackendContract, RefusesWrongShapes) {
   EXPECT_THROW(backend_->silhouettes(batch(), {window_}, masks), std::invalid_argument);
   EXPECT_THROW(backend_->depths(batch(), window_, depths), std::invalid_argument);
   EXPECT_THROW(backend_->silhouettes({poses_.data(), 3, 3, 3}, {window_}, masks), std::invalid_argument);
+  const Mask small(3, 3);
+  std::vector<OutlineRenderer::Counts> counts(kNumPoses);
+  if (GetParam().name != "Reference") {
+    EXPECT_THROW((void)backend_->counts(batch(), {window_}, small, counts), std::invalid_argument);
+    EXPECT_THROW((void)backend_->counts(batch(), {window_, true}, small, counts), std::invalid_argument);
+  }
   EXPECT_THROW((void)GetParam().make(nullptr, camera_), std::invalid_argument);
 }
 

@@ -34,12 +34,10 @@ class DepthSegmenter : public BlobSegmenter {
   }
 
   Result<Observation> segment(const ByteImage&, int64_t index) override {
-    Result<DepthImage> depth = depth_.image_of(index);
+    const Result<DepthImage> depth = depth_.image_of(index);
     if (!depth) return depth.failure();
     const Mask before = range_ ? within_depth_range(*depth, *range_) : nearer_than_background(*depth, background_);
-    Observation observation = judge(subject_of(before, clean_up_));
-    observation.depth = std::make_shared<const DepthImage>(std::move(*depth));
-    return observation;
+    return judge(subject_of(before, clean_up_));
   }
   [[nodiscard]] int64_t first_index() const override { return depth_.first_number() + depth_.offset; }
   [[nodiscard]] std::vector<std::string> warnings() const override { return warnings_; }

@@ -144,6 +144,7 @@ Result<void> ObservationSource::observe(Instant& instant, bool is_wanted) {
         segmenters_[camera]->segment(instant.frame.images[camera], video_.own_index(static_cast<int>(camera)));
     instant.segment_s += segmenting.seconds();
     if (!seen) return seen.failure();
+    seen->time_ns = instant.frame.time_ns;
     if (is_wanted) instant.observations.push_back(std::move(*seen));
   }
   return {};

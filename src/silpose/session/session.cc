@@ -37,6 +37,8 @@ class Session::Impl {
     result_.body = options_.tracker.body;
     is_whole_ = result_.used.smooths() || options_.fit_body;
     check(!is_whole_ || !source.video().is_live(), "Session: smoothing and fitting a body need a recorded clip");
+    check(!options_.fit_body || options_.tracker.likelihoods.empty(),
+          "Session: likelihoods of the program are of the body that was given, which is not the one that is fitted");
     check(!options_.checkpoint || !source.video().is_live(), "Session: a live camera cannot be resumed");
     check(!options_.checkpoint || std::ranges::count(options_.sinks, options_.checkpoint->masks) == 1,
           "Session: the masks of the checkpoint are not among the sinks");
@@ -123,7 +125,10 @@ Result<void> Session::Impl::read_over_done(const Checkpoint& earlier, int64_t& l
     if (earlier.seen.empty()) continue;
     auto seen = options_.checkpoint->masks->read(frame, earlier.seen.at(static_cast<size_t>(n)));
     if (!seen) return seen.failure();
-    for (size_t c = 0; c < seen->size(); ++c) (*seen)[c].ignored = source_.ignored(c);
+    for (size_t c = 0; c < seen->size(); ++c) {
+      (*seen)[c].ignored = source_.ignored(c);
+      (*seen)[c].time_ns = frame.time_ns;
+    }
     clip_.push_back({frame.index, frame.time_ns, std::move(*seen)});
   }
   return {};

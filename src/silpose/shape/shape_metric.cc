@@ -47,7 +47,7 @@ AreaMetric::Areas areas_of(const AreaMetric::Described& observed, const Mask& ma
 
 }  // namespace
 
-double AreaMetric::distance(const Areas& areas) {
+double AreaMetric::distance(const Areas& areas) const {
   const int64_t sum = areas.model + areas.observed;
   return sum == 0 ? 1.0 : static_cast<double>(sum - 2 * areas.both) / static_cast<double>(sum);
 }

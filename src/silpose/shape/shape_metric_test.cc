@@ -48,7 +48,7 @@ class ShapeMetricContract : public testing::TestWithParam<Case> {
 
 TEST_P(ShapeMetricContract, TheObservedSilhouetteIsAtDistanceZeroAndNothingIsNearer) {
   const auto found =
-      distances(seen_, {seen_, rectangle(16, 8, 16, 24), rectangle(12, 8, 16, 12), Mask(kWidth, kHeight)});
+      distances(seen_, {seen_, rectangle(12, 8, 16, 10), rectangle(12, 8, 24, 6), Mask(kWidth, kHeight)});
   EXPECT_NEAR(found[0], 0, 1e-12);
   for (size_t n = 1; n < found.size(); ++n) EXPECT_GT(found[n], 0) << n;
 }
@@ -91,7 +91,7 @@ TEST_P(ShapeMetricContract, IgnoredPixelsCountInNoSilhouette) {
   for (int y = 20; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) lower.set(x, y, (x + y) % 3 == 0);
   }
-  const std::vector<Mask> masks = {seen_, lower, rectangle(14, 8, 16, 24)};
+  const std::vector<Mask> masks = {seen_, lower, rectangle(12, 8, 16, 4)};
   const auto found = distances(seen_, masks, &ignored);
   EXPECT_EQ(found, distances(lower, masks, &ignored));
   EXPECT_NEAR(found[0], 0, 1e-12);
@@ -118,10 +118,11 @@ INSTANTIATE_TEST_SUITE_P(All, ShapeMetricContract,
                          [](const auto& tested) { return tested.param.name; });
 
 TEST(AreaMetric, IsTheDifferenceOverTheSumOfAreas) {
-  EXPECT_EQ(AreaMetric::distance({100, 100, 100}), 0);
-  EXPECT_EQ(AreaMetric::distance({100, 60, 0}), 1);
-  EXPECT_EQ(AreaMetric::distance({0, 0, 0}), 1);
-  EXPECT_DOUBLE_EQ(AreaMetric::distance({100, 50, 50}), 50.0 / 150);
+  const AreaMetric metric(AreaMetric::Unit::kPixels);
+  EXPECT_EQ(metric.distance({100, 100, 100}), 0);
+  EXPECT_EQ(metric.distance({100, 60, 0}), 1);
+  EXPECT_EQ(metric.distance({0, 0, 0}), 1);
+  EXPECT_DOUBLE_EQ(metric.distance({100, 50, 50}), 50.0 / 150);
 }
 
 // A tenth of a pixel: samples see it, pixels do not.

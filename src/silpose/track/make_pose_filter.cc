@@ -82,7 +82,8 @@ Backends make_backends(const TrackerOptions& options, const std::shared_ptr<cons
   Backends backends;
   for (const PinholeCamera& camera : options.cameras) {
     backends.push_back(options.make_backend ? options.make_backend(body, camera) : make_cpu_backend(body, camera));
-    check(backends.back() != nullptr, "make_backend: no backend");
+    check(backends.back() != nullptr && &backends.back()->body() == body.get(),
+          "make_backend: a backend that is not of the body that was given");
   }
   return backends;
 }
@@ -110,7 +111,9 @@ std::shared_ptr<const PoseLikelihood> sampled_likelihood(const TrackerOptions& o
                                     .share = kKeypointShare};
     parts.push_back(std::make_shared<const KeypointLikelihood>(body, options.cameras, keypoints));
   }
-  parts.insert(parts.end(), options.likelihoods.begin(), options.likelihoods.end());
+  if (comparison == Comparison::kImage) {
+    parts.insert(parts.end(), options.likelihoods.begin(), options.likelihoods.end());
+  }
   if (parts.size() == 1) return parts.front();
   return std::make_shared<const SumLikelihood>(std::move(parts));
 }
@@ -127,15 +130,15 @@ std::shared_ptr<const MotionModel> motion_of(const TrackerOptions& options) {
 class Recognition {
  public:
   explicit Recognition(const TrackerOptions& options)
-      : body_(options.body), cameras_(options.cameras), own_(options.proposal) {
+      : body_(options.body), cameras_(options.cameras), own_(options.proposal), seed_(options.seed ^ kProposalSeed) {
     is_used_ = options.sampling()->regenerate_from == RegenerateFrom::kNetwork && options.sampling()->regenerate > 0;
     if (is_used_ && !own_) keypoints_ = std::make_shared<const LandmarkProposal>(options.body);
   }
+  [[nodiscard]] bool is_used() const { return is_used_; }
   [[nodiscard]] Proposed poses(std::span<const Observation> observations, std::span<const double> last_pose,
                                double dt_s, uint64_t step) const {
     constexpr int kCandidates = 4;  // [guess]
-    if (!is_used_) return {};
-    Rng rng(kProposalSeed, step);
+    Rng rng(seed_, step);
     if (own_) return own_->propose({observations, cameras_, last_pose, dt_s}, 0, rng);
     for (size_t c = 0; c < cameras_.size(); ++c) {
       if (observations[c].box().empty() || observations[c].keypoints_3d.empty()) continue;
@@ -151,6 +154,7 @@ class Recognition {
   std::shared_ptr<const BodyModel> body_;
   std::vector<PinholeCamera> cameras_;  // [C]
   std::shared_ptr<const Proposal> own_, keypoints_;
+  uint64_t seed_;
   bool is_used_ = false;
 };
 
@@ -170,7 +174,10 @@ class JointFilter final : public PoseFilter {
     filter_.start(held_);
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
-    const Proposed proposed = recognition_.poses(observations, estimate(), dt_s, filter_.num_steps());
+    Proposed proposed;
+    if (recognition_.is_used()) {
+      proposed = recognition_.poses(observations, estimate(), dt_s, filter_.num_steps());
+    }
     return filter_.step(observations, proposed, held_, dt_s, seconds);
   }
   FilterReport coast(double dt_s) override { return filter_.coast(dt_s); }
@@ -204,7 +211,10 @@ class TwoFilters final : public PoseFilter {
     particles_ = pose_filter_.particles();
   }
   FilterReport step(std::span<const Observation> observations, double dt_s, StepSeconds& seconds) override {
-    const Proposed proposed = recognition_.poses(observations, estimate_, dt_s, pose_filter_.num_steps());
+    Proposed proposed;
+    if (recognition_.is_used()) {
+      proposed = recognition_.poses(observations, estimate_, dt_s, pose_filter_.num_steps());
+    }
     FilterReport report = pose_filter_.step(observations, proposed, estimate_, dt_s, seconds);
     if (!root_fixed_) root_filter_.step(observations, {}, pose_filter_.estimate(), dt_s, seconds);
     combine();
@@ -273,8 +283,7 @@ class TwoFilters final : public PoseFilter {
 std::unique_ptr<PoseFilter> make_pose_filter(const TrackerOptions& options, const TrackedBody& body) {
   options.check();
   if (options.fitted() != nullptr) {
-    const auto ranking =
-        std::make_shared<const CoverageLikelihood>(body.coarse, options.cameras, kRankingRows, options.likelihoods);
+    const auto ranking = std::make_shared<const CoverageLikelihood>(body.coarse, options.cameras, kRankingRows);
     return std::make_unique<FittedFilter>(options, body.likelihood, ranking, body.pose_prior);
   }
   if (options.sampling()->separate_root) return std::make_unique<TwoFilters>(options, body.fine);

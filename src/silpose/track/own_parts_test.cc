@@ -10,6 +10,7 @@
 #include "silpose/base/state_bytes.h"
 #include "silpose/body/test_body.h"
 #include "silpose/filter/resampling.h"
+#include "silpose/shape/normalised_silhouette.h"
 #include "silpose/track/tracker.h"
 
 namespace silpose {
@@ -51,7 +52,8 @@ class RootSensor final : public PoseLikelihood {
 class Counting final : public MotionModel {
  public:
   struct Hidden final : HiddenStates {
-    std::vector<double> moves, first;  // [N]; `first`: a number that the particle that began each line was given
+    // [N] How often a particle's line moved; a number that the first of the line was given; column 0 after the motion.
+    std::vector<double> moves, first, column;
     int num_selections = 0;
     void select(std::span<const int> ancestors) override {
       const Hidden before = *this;
@@ -59,12 +61,14 @@ class Counting final : public MotionModel {
         const int from = ancestors[n];
         moves[n] = from == kRegenerate ? 0 : before.moves[static_cast<size_t>(from)];
         first[n] = from == kRegenerate ? -1 : before.first[static_cast<size_t>(from)];
+        column[n] = from == kRegenerate ? 0 : before.column[static_cast<size_t>(from)];
       }
       ++num_selections;
     }
-    std::string state() const override { return to_bytes(moves, first, num_selections); }
+    std::string state() const override { return to_bytes(moves, first, column, num_selections); }
     void restore(std::string_view state) override {
-      if (!from_bytes(state, moves, first, num_selections)) throw std::invalid_argument("Counting: not a state of it");
+      if (!from_bytes(state, moves, first, column, num_selections))
+        throw std::invalid_argument("Counting: not a state of it");
     }
   };
 
@@ -78,13 +82,18 @@ class Counting final : public MotionModel {
   std::unique_ptr<HiddenStates> make_hidden(int num_particles) const override {
     auto hidden = std::make_unique<Hidden>();
     hidden->moves.assign(static_cast<size_t>(num_particles), 0);
+    hidden->column.assign(static_cast<size_t>(num_particles), 0);
     for (int n = 0; n < num_particles; ++n) hidden->first.push_back(n);
     last_ = hidden.get();
     return hidden;
   }
   void propagate(StateBatch& states, HiddenStates* hidden, const MotionContext& context) const override {
     histories_.push_back({context.history.begin(), context.history.end()});
-    for (double& moves : dynamic_cast<Hidden&>(*hidden).moves) ++moves;
+    auto& own = dynamic_cast<Hidden&>(*hidden);
+    for (size_t n = 0; n < own.moves.size(); ++n) {
+      num_wrong_ += own.moves[n] > 0 && own.column[n] != states(static_cast<Eigen::Index>(n), 0);
+      ++own.moves[n];
+    }
     if (context.history.size() == 2) {
       const auto& [before, last] = std::pair(context.history[0], context.history[1]);
       const double share = context.dt_s / (before.seconds_ago - last.seconds_ago);
@@ -94,12 +103,14 @@ class Counting final : public MotionModel {
       }
     }
     plain_->propagate(states, nullptr, context);
+    for (size_t n = 0; n < own.moves.size(); ++n) own.column[n] = states(static_cast<Eigen::Index>(n), 0);
   }
   void diffuse(StateBatch& states, std::span<const double> deviation, uint64_t seed, uint64_t stream) const override {
     plain_->diffuse(states, deviation, seed, stream);
   }
 
   mutable Hidden* last_ = nullptr;
+  mutable int num_wrong_ = 0;  // particles whose hidden state is another one's
   mutable std::vector<std::vector<MotionContext::Past>> histories_;
 
  private:
@@ -113,10 +124,20 @@ class Unlike final : public Proposal {
     contexts_.push_back({{context.last_pose.begin(), context.last_pose.end()}, context.dt_s});
     Proposed proposed{StateBatch::Zero(2, 8), {-1e3, 0}};
     proposed.poses(0, 0) = 1.5;
+    proposed.poses(1, 0) = 0.5;
     proposed.poses(0, 1) = proposed.poses(1, 1) = 0.5;
     return proposed;
   }
   mutable std::vector<std::pair<std::vector<double>, double>> contexts_;
+};
+
+class Nothing final : public Proposal {
+ public:
+  Proposed propose(const ProposalContext&, int, Rng&) const override { return {}; }
+};
+class Wrong final : public Proposal {
+ public:
+  Proposed propose(const ProposalContext&, int, Rng&) const override { return {StateBatch::Zero(2, 3)}; }
 };
 
 class OwnPartsTest : public testing::Test {
@@ -147,7 +168,9 @@ class OwnPartsTest : public testing::Test {
 
 // A sensor that contradicts the silhouettes pulls every filter its way, the harder the surer it is.
 TEST_F(OwnPartsTest, AnOwnLikelihoodPulls) {
-  for (const auto& filter : {options(FittedOptions{}), sampling(), sampling(4)}) {
+  const TrackerOptions two_filters =
+      options(SamplingOptions{.num_particles = kNumParticles, .separate_root = true, .sharpness = 40});
+  for (const auto& filter : {options(FittedOptions{}), sampling(), sampling(4), two_filters}) {
     TrackerOptions pulled = filter;
     pulled.likelihoods = {std::make_shared<RootSensor>(body_, 0.6, 0.002, true)};
     const double free = last_pose(filter)[0], held = last_pose(pulled)[0];
@@ -185,6 +208,9 @@ TEST_F(OwnPartsTest, HiddenStatesFollowTheirParticles) {
     const Counting::Hidden& hidden = *motion->last_;
     EXPECT_EQ(hidden.moves, std::vector<double>(kNumParticles, 5));
     EXPECT_EQ(hidden.num_selections, 5 * num_layers);
+    if (num_layers == 1) {
+      EXPECT_EQ(motion->num_wrong_, 0);  // annealing moves particles between its layers
+    }
     std::vector<double> lines = hidden.first;
     std::ranges::sort(lines);
     lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
@@ -224,6 +250,33 @@ TEST_F(OwnPartsTest, HiddenStatesAndHistoryResume) {
   EXPECT_EQ(motion->last_->moves, std::vector<double>(kNumParticles, 6));
 }
 
+// 1 - intersection over union, by looking at the silhouettes.
+class Jaccard final : public ShapeMetric {
+ public:
+  struct Seen final : Description {
+    Mask mask;
+  };
+  std::unique_ptr<const Description> describe(const Mask& observed, const Mask*, const Window& window) const override {
+    auto seen = std::make_unique<Seen>();
+    seen->mask = resample_mask(observed, window);
+    return seen;
+  }
+  void distances(const Description& observed, std::span<const Mask> masks, std::span<double> out) const override {
+    for (size_t n = 0; n < masks.size(); ++n) {
+      out[n] = 1 - intersection_over_union(masks[n], dynamic_cast<const Seen&>(observed).mask);
+    }
+  }
+};
+
+TEST_F(OwnPartsTest, AMetricOfItsOwnTracks) {
+  TrackerOptions own = sampling(4);
+  own.shape_metric = std::make_shared<Jaccard>();
+  const std::vector<double> found = last_pose(own), truth = pose(5);
+  EXPECT_NEAR(found[0], truth[0], 0.06);
+  EXPECT_NEAR(found[1], truth[1], 0.06);
+  EXPECT_NEAR(found[5], truth[5], 0.15);
+}
+
 // The same metric and the same silhouettes by the longer way: what is drawn, then compared.
 TEST_F(OwnPartsTest, OwnMetricAndBackendGiveTheSameTrack) {
   TrackerOptions drawn = sampling();
@@ -245,10 +298,23 @@ TEST_F(OwnPartsTest, RegenerationDrawsCandidatesByTheirDensity) {
   const std::vector<double> first = step(tracker, 0).pose;
   step(tracker, 1);
   const StateBatch& particles = tracker.particles();
-  EXPECT_LT(particles.col(0).maxCoeff(), 1);  // none about the unlikely one, at 1.5 m
+  EXPECT_GT(particles.col(0).maxCoeff(), 0.35);  // about the likely one, at 0.5 m
+  EXPECT_LT(particles.col(0).maxCoeff(), 1);     // none about the unlikely one, at 1.5 m
   ASSERT_GE(proposal->contexts_.size(), 2u);
   EXPECT_EQ(proposal->contexts_.back().first, first);
   EXPECT_NEAR(proposal->contexts_.back().second, 1e-9 * kFrame_ns, 1e-12);
+}
+
+// A proposal that recognises nothing leaves the start to the common poses; one of the wrong size is refused.
+TEST_F(OwnPartsTest, ProposalsAreChecked) {
+  TrackerOptions own = options(FittedOptions{});
+  own.initial_pose.reset();
+  own.proposal = std::make_shared<Nothing>();
+  Tracker tracker(own);
+  EXPECT_EQ(step(tracker, 0).state, StepReport::State::kInitialised);
+  own.proposal = std::make_shared<Wrong>();
+  Tracker wrong(own);
+  EXPECT_THROW(step(wrong, 0), std::invalid_argument);
 }
 
 }  // namespace

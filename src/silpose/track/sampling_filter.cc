@@ -24,12 +24,24 @@ SamplingFilter::SamplingFilter(const SamplingOptions& options, std::shared_ptr<c
       motion_(std::move(motion)),
       free_dofs_(std::move(free_dofs)),
       seed_(seed),
-      resampler_(make_resampler(options.resampling, options.regenerate).value()) {}
+      resampler_(make_resampler(options.resampling, options.regenerate).value()) {
+  const int size = motion_->state_size(), num_dofs = skeleton().num_dofs();
+  check(size >= num_dofs && std::ssize(motion_->deviation()) == size,
+        "SamplingFilter: a motion model with states of {} numbers and {} deviations for a body of {} DOF", size,
+        motion_->deviation().size(), num_dofs);
+  for (const bool moves : {false, true}) {
+    for (const int column : columns_where(moves)) {
+      check(column >= 0 && column < size, "SamplingFilter: a motion model with a column {} of {}", column, size);
+    }
+  }
+}
 
 void SamplingFilter::start(std::span<const double> pose) {
   check(std::ssize(pose) == skeleton().num_dofs(), "SamplingFilter: start pose of {} numbers", pose.size());
   const StateBatch one = Eigen::Map<const Eigen::RowVectorXd>(pose.data(), std::ssize(pose));
   StateBatch states = motion_->states_from_poses(one.replicate(options_.num_particles, 1));
+  check(states.rows() == options_.num_particles && states.cols() == motion_->state_size(),
+        "SamplingFilter: a motion model that makes states of {} numbers, not {}", states.cols(), motion_->state_size());
   std::vector<double> deviation(motion_->deviation().begin(), motion_->deviation().end());
   const std::vector<int> columns = free_columns();
   for (size_t d = 0; d < deviation.size(); ++d) {
@@ -69,12 +81,11 @@ void SamplingFilter::propagate(StateBatch& states, double dt_s, uint64_t stream)
 // New particles are drawn about what was proposed, or the estimate, three times as wide as one frame's noise.
 void SamplingFilter::regenerate(StateBatch& states, std::span<const int> rows, const Proposed& proposed,
                                 uint64_t stream) const {
+  check_proposed(proposed, skeleton());
   const std::vector<double> centre = estimate();
   const Eigen::Index K = proposed.poses.rows();
   std::vector<int> chosen;  // of unlike candidates, in proportion
   if (K > 0 && !proposed.log_density.empty()) {
-    check(std::ssize(proposed.log_density) == K, "SamplingFilter: {} densities of {} candidates",
-          proposed.log_density.size(), K);
     Rng rng(seed_ ^ kRegenerateSeed, stream, kResamplingParticle);
     chosen = make_resampler("systematic").value()->resample(proposed.log_density, static_cast<int>(rows.size()), rng);
   }
@@ -191,7 +202,13 @@ void SamplingFilter::restore(std::optional<State> state) {
   check(particles.size() == options_.num_particles && std::ssize(particles.log_weights) == particles.size() &&
             particles.states.cols() == std::ssize(motion_->deviation()),
         "SamplingFilter: not a state of it: {} particles of {} numbers", particles.size(), particles.states.cols());
+  const auto has_size = [&](const MotionContext::Past& past) { return std::ssize(past.pose) == skeleton().num_dofs(); };
+  check(std::ssize(state->history) <= motion_->history_length() && std::ranges::all_of(state->history, has_size),
+        "SamplingFilter: not a state of it: {} past estimates for a motion model that uses {}", state->history.size(),
+        motion_->history_length());
   hidden_ = motion_->make_hidden(options_.num_particles);
+  check(hidden_ != nullptr || state->hidden.empty(),
+        "SamplingFilter: not a state of it: hidden states of another motion model");
   if (hidden_) hidden_->restore(state->hidden);
   history_ = std::move(state->history);
   make_filter(particles.states);

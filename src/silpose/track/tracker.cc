@@ -57,8 +57,10 @@ std::optional<std::pair<int, int>> paired_contacts(const RigProfile& profile) {
 }  // namespace
 
 struct Tracker::Impl {
-  explicit Impl(const TrackerOptions& given) : options(given), sides(given.cameras.size()) {
-    options.check();
+  explicit Impl(const TrackerOptions& given)
+      : options((given.check(), given)),
+        common_poses(options.body->skeleton, options.body->profile),
+        sides(given.cameras.size()) {
     body.fine = level_of_detail(options.body, options.lod_vertices);
     body.coarse = level_of_detail(options.body, kRankingLevel);
     body.likelihood =
@@ -70,10 +72,6 @@ struct Tracker::Impl {
     }
     filter = make_pose_filter(options, body);
     for_start = start_proposal(options);
-    for_restart = options.proposal;
-    if (!for_restart) {
-      for_restart = std::make_shared<const CommonPoses>(options.body->skeleton, options.body->profile);
-    }
   }
 
   // Starting poses for what is seen, `dt_s` after the last estimate: the given one, or by descent; the last estimate
@@ -81,8 +79,13 @@ struct Tracker::Impl {
   std::vector<StartingPose> starting_poses(std::span<const Observation> observations, double dt_s) const {
     if (options.initial_pose && last_pose.empty()) return {{*options.initial_pose, 0}};
     Rng rng(options.seed, static_cast<uint64_t>(steps));
-    const Proposal& proposal = started ? *for_restart : *for_start;
-    StateBatch candidates = proposal.propose({observations, options.cameras, last_pose, dt_s}, 0, rng).poses;
+    const Proposal& for_restart = options.proposal ? *options.proposal : common_poses;
+    const Proposal& proposal = started ? for_restart : *for_start;
+    const ProposalContext context{observations, options.cameras, last_pose, dt_s};
+    Proposed proposed = proposal.propose(context, 0, rng);
+    check_proposed(proposed, options.body->skeleton);
+    if (proposed.poses.rows() == 0) proposed = common_poses.propose(context, 0, rng);
+    StateBatch& candidates = proposed.poses;
     if (!last_pose.empty()) {
       candidates.conservativeResize(candidates.rows() + 1, Eigen::NoChange);
       candidates.bottomRows<1>() = Eigen::Map<const Eigen::RowVectorXd>(last_pose.data(), std::ssize(last_pose));
@@ -236,10 +239,11 @@ struct Tracker::Impl {
   }
 
   TrackerOptions options;
+  CommonPoses common_poses;
   TrackedBody body;
   std::vector<BatchRenderer> seen_by, expected_by;  // [C] the whole mesh, and a coarse one
   std::unique_ptr<PoseFilter> filter;
-  std::shared_ptr<const Proposal> for_start, for_restart;
+  std::shared_ptr<const Proposal> for_start;
   std::vector<double> last_pose;
   bool started = false;
   int num_reinitialisations = 0;

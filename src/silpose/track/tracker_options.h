@@ -79,14 +79,17 @@ struct TrackerOptions {
   uint64_t seed = 1;
   std::optional<std::vector<double>> initial_pose;  // [D]; absent: descent on the first good mask
   // Candidates for the start, for re-initialising the fitted mixture, and for particles that are regenerated from a
-  // network; absent: the common poses, and what the keypoints show.
+  // network; absent: the common poses, and what the keypoints show. Starts with `landmarks` do not use it.
   std::shared_ptr<const Proposal> proposal;
 
   // What a program may add or replace; nothing, for what the other options say.
   // Evidence besides silhouettes and keypoints, of bodies with the same degrees of freedom: log-likelihoods add up. The
-  // fitted mixture needs likelihoods that can be linearised. Instants without a usable mask coast all the same.
+  // fitted mixture needs likelihoods that can be linearised. Filters that sample weigh silhouettes by `sharpness` and
+  // keypoints by a fifth, which is less than their likelihood, so that enough particles are left: others need a like
+  // share. With separate_root only the filter of the root uses them. Instants without a usable mask coast all the same.
   std::vector<std::shared_ptr<const PoseLikelihood>> likelihoods;
-  // Of sampling filters: in place of SamplingOptions::motion and ::metric, and what they draw with.
+  // Of sampling filters: in place of SamplingOptions::motion and its sigma_deg; in place of ::metric; what they draw
+  // silhouettes with. The last two are not used where `evidence` is keypoints alone.
   std::shared_ptr<const MotionModel> motion_model;
   std::shared_ptr<const ShapeMetric> shape_metric;
   MakeRenderBackend make_backend;
