@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kBone = 0.7, kThick = 0.12, kThin = 0.05;  // metres: length of each bone, radius at root and tip
 
-// A closed tapered tube of two bones along +Y, bent in the picture's plane by one angle each; rest and zero pose are
+// A closed tapered tube of two bones along +Y, bent in the image's plane by one angle each; rest and zero pose are
 // straight. 60 rings of 16 vertices and two middles: 962 vertices.
 BodyModel make_two_bone_tube() {
   constexpr uint32_t kRings = 60, kSides = 16;

@@ -35,7 +35,7 @@ struct SilhouetteScene {
   [[nodiscard]] BatchView batch(size_t count) const { return {poses.data(), count, num_dofs, num_dofs}; }
 };
 
-// Standing poses that use a third of every angle's range, in the middle of a 640x480 picture; a further one is
+// Standing poses that use a third of every angle's range, in the middle of a 640x480 image; a further one is
 // observed.
 SilhouetteScene standing_scene(std::shared_ptr<const BodyModel> body, size_t num_poses, int size = 128);
 

@@ -68,7 +68,7 @@ class Caster {
  private:
   static constexpr int kBlock = 4;  // pixels a side: 16 rays at a time
 
-  // Into clip coordinates; x_min_ to y_max_ are the bounds on the picture in pixels.
+  // Into clip coordinates; x_min_ to y_max_ are the bounds on the image in pixels.
   void skin(std::span<const double> pose) {
     clip_from_rest(*scene_, pose, clip_from_rest_);
     const SkinWeights& weights = scene_->body->skin;

@@ -1,4 +1,4 @@
-# Clips that are not even pictures at an even rate: turned, of variable rate, of other pixels; masks given as film.
+# Clips that are not even images at an even rate: turned, of variable rate, of other pixels; masks given as film.
 source "$(dirname "$0")/checks.sh"
 clip_tool=$3
 
@@ -41,11 +41,11 @@ expect_at_least "$(number boxed.json mean_area_px)" "$(awk "BEGIN { print 1.2 * 
 "$silpose" evaluate --result boxed --truth truth --json --quiet >errors.json
 expect_at_least "$(number errors.json mask_iou mean)" 0.9 "boxed: masks that the tracker was shown, IoU"
 
-# A subject who is never whole in the picture is reported.
+# A subject who is never whole in the image is reported.
 "$silpose" synth --out small --motion static --frames 3 --size 160x120 --quiet
 "$silpose" segment small/masks --segmenter masks --grow 64 --out masks_cut --json --quiet >cut.json 2>/dev/null ||
   fail "a subject at the edge: exit $?"
-grep -q 'reaches the edge of the picture in 100 %' cut.json || fail "nothing says that the subject is cut off"
+grep -q 'reaches the edge of the image in 100 %' cut.json || fail "nothing says that the subject is cut off"
 grep -q 'reaches the edge' masks_even.json && fail "the clip as it is: said to be cut off"
 
 # Every fifth frame dropped, time stamps from 1 s on: times are the clip's own from its first frame, also of the overlay,

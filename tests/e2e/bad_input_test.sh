@@ -114,7 +114,7 @@ expect_failure 1 'lead-in' "${track[@]}" colour/video.mp4 --background lead-in:6
 expect_failure 1 'colour/video.mp4.*no screen' "${track[@]}" colour/video.mp4 --segmenter chroma --key-colour '#0000ff'
 
 # Depth.
-depth() {  # FOLDER COUNT WIDTH HEIGHT BITS: flat depth pictures, 16-bit or 8-bit grey
+depth() {  # FOLDER COUNT WIDTH HEIGHT BITS: flat depth images, 16-bit or 8-bit grey
   mkdir "$1"
   python3 - "$@" <<'PYTHON'
 import struct
@@ -136,7 +136,7 @@ depth wide 3 200 120 16
 depth short 1 160 120 16
 by_depth=("${track[@]}" colour/video.mp4 --segmenter depth)
 "$silpose" segment colour/video.mp4 --segmenter depth --depth deep --depth-range 1,3 --out near --quiet >log.txt ||
-  fail "depth pictures are refused"
+  fail "depth images are refused"
 expect_failure 2 'segmenter depth.*--depth' "${by_depth[@]}"
 expect_failure 2 'depth.*segmenter depth' "${track[@]}" colour/video.mp4 --depth deep
 expect_failure 1 'short: 1 depth images for 3 frames' "${track[@]}" colour/video.mp4 --segmenter background --depth short
@@ -156,14 +156,14 @@ sed -E '2s/[^,]*$/nan/' truth/poses.csv >nan.csv
 awk -F, -v OFS=, 'NR == 2 { $3 = "1e300" } 1' truth/poses.csv >huge.csv
 expect_failure 1 'columns.csv' "${masks[@]}" --init columns.csv
 expect_failure 1 'huge.csv.*1e300' "${masks[@]}" --init huge.csv
-expect_failure 1 'huge.csv.*1e300' render --pose huge.csv --out picture.png
+expect_failure 1 'huge.csv.*1e300' render --pose huge.csv --out image.png
 expect_failure 1 'nan.csv' "${masks[@]}" --init nan.csv
 expect_failure 1 'empty.csv' "${masks[@]}" --init empty.csv
 expect_failure 1 'init landmarks: masks finds none' "${masks[@]}" --init landmarks
 expect_failure 1 'evidence landmarks: masks finds none' "${masks[@]}" --evidence landmarks
 expect_failure 1 'regenerate-from network: masks finds no keypoints' "${masks[@]}" --preset thesis --regenerate-from network
-expect_failure 1 'absent.csv' render --pose absent.csv --out picture.png
-expect_failure '1|2' 'poses.csv:99' render --pose truth/poses.csv:99 --out picture.png
+expect_failure 1 'absent.csv' render --pose absent.csv --out image.png
+expect_failure '1|2' 'poses.csv:99' render --pose truth/poses.csv:99 --out image.png
 expect_failure 1 'folder' evaluate --result folder --truth truth
 mkdir wrong && cp columns.csv wrong/poses.csv
 expect_failure 1 'wrong/poses.csv' evaluate --result wrong --truth truth
@@ -203,7 +203,7 @@ expect_failure 1 'mine' synth --out mine --frames 1
 echo precious >file
 expect_failure 1 'file' synth --out file --frames 1
 expect_failure 1 'file/new' synth --out file/new --frames 1
-expect_failure 1 'file/picture.png' render --pose truth/poses.csv --out file/picture.png
+expect_failure 1 'file/image.png' render --pose truth/poses.csv --out file/image.png
 echo 'wheels = 4' >wheels.toml
 expect_failure '1|2' 'wheels' "${masks[@]}" --config wheels.toml
 

@@ -37,12 +37,12 @@ ByteImage squeezed(const ByteImage& shown) {
   return stored;
 }
 
-void cover(ByteImage& picture, int64_t index) {
+void cover(ByteImage& image, int64_t index) {
   if (index < 20) return;
-  const int top = picture.height() / 5 + static_cast<int>(index % 5);  // it moves
-  for (int y = top; y < top + 3 * picture.height() / 5; ++y) {
-    for (int x = 5; x < 5 + picture.width() / 4; ++x) {
-      for (int c = 0; c < 3; ++c) picture.at(x, y, c) = static_cast<uint8_t>(60 + 40 * c);
+  const int top = image.height() / 5 + static_cast<int>(index % 5);  // it moves
+  for (int y = top; y < top + 3 * image.height() / 5; ++y) {
+    for (int x = 5; x < 5 + image.width() / 4; ++x) {
+      for (int c = 0; c < 3; ++c) image.at(x, y, c) = static_cast<uint8_t>(60 + 40 * c);
     }
   }
 }
@@ -51,20 +51,20 @@ void make(const std::string& kind, const std::string& in, const std::string& out
   ClipForTest clip;
   Video video = open_video(in).value();
   clip.rate = static_cast<int>(std::lround(video.fps()));
-  std::vector<ByteImage> pictures;
+  std::vector<ByteImage> images;
   for (Frame frame : video) {
     const bool dropped = kind == "uneven" && frame.index % 5 == 3;
     if (dropped) continue;
     if (kind == "uneven") clip.times_ms.push_back(1000 + frame.time_ns / 1'000'000);
     ByteImage& shown = frame.images[0];
     if (kind == "boxed") cover(shown, frame.index);
-    pictures.push_back(kind == "turned" ? laid_down(shown) : kind == "squeezed" ? squeezed(shown) : std::move(shown));
+    images.push_back(kind == "turned" ? laid_down(shown) : kind == "squeezed" ? squeezed(shown) : std::move(shown));
   }
   if (kind == "turned") clip.display_matrix = {{0, 1 << 16, 0, -(1 << 16), 0, 0, 0, 0, 1 << 30}};
   if (kind == "squeezed") clip.pixel_aspect = {2, 1};
   if (kind == "deep") clip.codec = "libx265", clip.pixel_format = "yuv420p10le";
   if (kind == "interlaced") clip.is_interlaced = true;
-  write_clip_for_test(out, pictures, clip);
+  write_clip_for_test(out, images, clip);
 }
 
 void print_times(const std::string& file) {

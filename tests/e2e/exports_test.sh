@@ -6,16 +6,16 @@ read_glb=$3
 
 "$silpose" synth --out truth --motion sway --amplitude-deg 25 --frames 16 --size 320x240 --view 60 --seed 3 --quiet
 cp -r truth/masks masks
-python3 - masks/000008.png masks/000009.png <<'PYTHON'  # black pictures of 320 x 240
+python3 - masks/000008.png masks/000009.png <<'PYTHON'  # black images of 320 x 240
 import struct, sys, zlib
 
 def chunk(kind, data):
     return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-picture = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 320, 240, 8, 0, 0, 0, 0))
-picture += chunk(b"IDAT", zlib.compress(bytes(240 * 321))) + chunk(b"IEND", b"")
+image = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 320, 240, 8, 0, 0, 0, 0))
+image += chunk(b"IDAT", zlib.compress(bytes(240 * 321))) + chunk(b"IEND", b"")
 for path in sys.argv[1:]:
-    open(path, "wb").write(picture)
+    open(path, "wb").write(image)
 PYTHON
 track=(track masks --segmenter masks --camera truth/camera.toml --init truth/poses.csv --particles 100 --layers 3
        --quiet --json)

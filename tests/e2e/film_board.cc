@@ -38,7 +38,7 @@ void film(const std::filesystem::path& folder) {
   for (const PinholeCamera& camera : cameras) {
     const BoardFilm scene(camera);
     VideoWriter video = create_video(folder / (camera.name + ".mp4"), camera.width, camera.height, 25).value();
-    for (const Rigid3& place : places) video.write(scene.picture(kBoard, place, rng)).value();
+    for (const Rigid3& place : places) video.write(scene.image(kBoard, place, rng)).value();
     video.close().value();
   }
   write_cameras(folder / "truth.toml", cameras).value();

@@ -79,7 +79,7 @@ expect_at_least "$(number seen_errors.json mask_iou mean)" 0.65 "segmented masks
 grep -q -i 'no person' nobody.json || fail "no warning that nobody was seen"
 [[ -s nobody/report.html && -s nobody/poses.csv ]] || fail "no result where nobody is seen"
 
-# One pose as a picture, and bodies.
+# One pose as an image, and bodies.
 for kind in silhouette depth shaded; do
   "$silpose" render --pose truth/poses.csv:3 --kind $kind --size 200x160 --out $kind.png --quiet || fail "render --kind $kind"
   [[ -s $kind.png ]] || fail "no $kind.png"

@@ -11,7 +11,7 @@ namespace silpose {
 namespace {
 
 constexpr double kPixelCentre = 0.5;  // the library's pixels less OpenCV's
-constexpr int kSearchSide = 1280;     // pixels; larger pictures are made smaller to look for a board in them
+constexpr int kSearchSide = 1280;     // pixels; larger images are made smaller to look for a board in them
 
 // Brightness in the middle of the square whose first corner is (column, row).
 double square_brightness(const cv::Mat& grey, const std::vector<cv::Point2f>& corners, const Board& board, int column,
@@ -42,7 +42,7 @@ void order_corners(const cv::Mat& grey, const Board& board, std::vector<cv::Poin
   if (difference < 0) std::reverse(corners.begin(), corners.end());
 }
 
-// Corners to about a tenth of a pixel of the picture searched; none where there is no board.
+// Corners to about a tenth of a pixel of the image searched; none where there is no board.
 std::vector<cv::Point2f> find_roughly(const cv::Mat& grey, cv::Size pattern) {
   const double scale = std::min(1.0, double(kSearchSide) / std::max(grey.cols, grey.rows));
   cv::Mat searched = grey;
@@ -55,7 +55,7 @@ std::vector<cv::Point2f> find_roughly(const cv::Mat& grey, cv::Size pattern) {
   return corners;
 }
 
-// Looks again where the board is, at full size and with all care, which in the whole picture would take long.
+// Looks again where the board is, at full size and with all care, which in the whole image would take long.
 void locate_exactly(const cv::Mat& grey, cv::Size pattern, std::vector<cv::Point2f>& corners) {
   const cv::Rect board = cv::boundingRect(corners);
   const int margin = 2 * std::max(board.width, board.height) / std::min(pattern.width, pattern.height);
@@ -78,10 +78,10 @@ std::vector<Eigen::Vector3d> board_points(const Board& board) {
   return points;
 }
 
-std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& picture, const Board& board, bool thorough) {
-  check(picture.channels() == 3, "find_board: picture of {} channels", picture.channels());
+std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& image, const Board& board, bool thorough) {
+  check(image.channels() == 3, "find_board: image of {} channels", image.channels());
   check(board.columns >= 3 && board.rows >= 3, "find_board: board of {}x{} corners", board.columns, board.rows);
-  const cv::Mat colour(picture.height(), picture.width(), CV_8UC3, const_cast<uint8_t*>(picture.pixels().data()));
+  const cv::Mat colour(image.height(), image.width(), CV_8UC3, const_cast<uint8_t*>(image.pixels().data()));
   cv::Mat grey;
   cv::cvtColor(colour, grey, cv::COLOR_BGR2GRAY);
   const cv::Size pattern(board.columns, board.rows);

@@ -1,4 +1,4 @@
-// A printed chessboard, and where its inner corners are in a picture.
+// A printed chessboard, and where its inner corners are in an image.
 // Based on: OpenCV's sector-based detector (references.bib: opencv).
 // Threads: pure functions.
 #pragma once
@@ -26,8 +26,8 @@ struct Board {
 
 // Pixels [N] of the inner corners in the order of board_points(); nothing where the whole board is not seen. The square
 // between the first four is dark where the board has one way up. `thorough` takes up to ten times as long and finds a
-// board that is small in a large picture, too. REQUIRES: picture of 3 channels.
-[[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& picture, const Board& board,
+// board that is small in a large image, too. REQUIRES: image of 3 channels.
+[[nodiscard]] std::optional<std::vector<Eigen::Vector2d>> find_board(const ByteImage& image, const Board& board,
                                                                      bool thorough = false);
 
 }  // namespace silpose

@@ -1,4 +1,4 @@
-// Pictures of a printed board, ray by ray through a camera with distortion: the ground truth of calibration tests.
+// Images of a printed board, ray by ray through a camera with distortion: the ground truth of calibration tests.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ class BoardFilm {
   }
 
   // The board in front of a grey wall. The square between its first four corners is dark, its margin a square wide.
-  [[nodiscard]] ByteImage picture(const Board& board, const Rigid3& world_from_board, Rng& rng) const {
+  [[nodiscard]] ByteImage image(const Board& board, const Rigid3& world_from_board, Rng& rng) const {
     const Rigid3 board_from_cam = (camera_.cam_from_world * world_from_board).inverse();
     ByteImage image(camera_.width, camera_.height, 3);
     size_t ray = 0;

@@ -30,19 +30,19 @@ TEST(FindBoardTest, CornersAreWhereTheyAreAndInOrderWhicheverWayTheBoardIsTurned
   Rng rng(5);
   for (const double roll : {0.0, 1.6, 3.1}) {
     const Rigid3 pose = board_towards(board, {0.05, 1, 0}, {0, 1, 1}, {0.4, -0.3, roll});
-    const auto found = find_board(film.picture(board, pose, rng), board);
+    const auto found = find_board(film.image(board, pose, rng), board);
     ASSERT_TRUE(found) << roll;
     EXPECT_LT(largest_error(board, film.camera(), pose, *found), 0.3) << roll;
   }
 }
 
-TEST(FindBoardTest, CornersInLargePicturesAreAsExact) {
+TEST(FindBoardTest, CornersInLargeImagesAreAsExact) {
   PinholeCamera camera = look_at_camera(1440, 810, 1200, {0, 1, 1}, {0, 1, 0});
   const Board board{.columns = 6, .rows = 5, .square_m = 0.06};
   const BoardFilm film(camera);
   Rng rng(6);
   const Rigid3 pose = board_towards(board, {0.02, 1, 0}, {0, 1, 1}, {0.3, 0.4, 0.2});
-  const auto found = find_board(film.picture(board, pose, rng), board);
+  const auto found = find_board(film.image(board, pose, rng), board);
   ASSERT_TRUE(found);
   EXPECT_LT(largest_error(board, camera, pose, *found), 0.3);
 }
@@ -52,9 +52,9 @@ TEST(FindBoardTest, AThoroughSearchFindsABoardFarAwayOnTheFloor) {
   const BoardFilm film(look_at_camera(1920, 540, 1600, {0, 1.5, 0}, {0, 0, -4}));
   Rng rng(8);
   const Rigid3 pose = board_on_floor(board, 0.1, -4);
-  const ByteImage picture = film.picture(board, pose, rng);
-  EXPECT_FALSE(find_board(picture, board));
-  const auto found = find_board(picture, board, true);
+  const ByteImage image = film.image(board, pose, rng);
+  EXPECT_FALSE(find_board(image, board));
+  const auto found = find_board(image, board, true);
   ASSERT_TRUE(found);
   EXPECT_LT(largest_error(board, film.camera(), pose, *found), 0.5);
 }
@@ -64,7 +64,7 @@ TEST(FindBoardTest, NothingWhereThereIsNoneOrOnlyPartOfIt) {
   const BoardFilm film(lens());
   Rng rng(7);
   EXPECT_FALSE(find_board(ByteImage(320, 240, 3, uint8_t{90}), board));
-  EXPECT_FALSE(find_board(film.picture(board, board_towards(board, {0.5, 1, 0}, {0.5, 1, 1}, {0, 0, 0}), rng), board));
+  EXPECT_FALSE(find_board(film.image(board, board_towards(board, {0.5, 1, 0}, {0.5, 1, 1}, {0, 0, 0}), rng), board));
 }
 
 }  // namespace

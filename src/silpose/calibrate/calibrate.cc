@@ -96,7 +96,7 @@ void set_world(const Rigid3& new_from_old, std::vector<PinholeCamera>& cameras) 
   for (PinholeCamera& camera : cameras) camera.cam_from_world = camera.cam_from_world * new_from_old.inverse();
 }
 
-// Part of the picture's cells in which the views have corners.
+// Part of the image's cells in which the views have corners.
 double coverage(const PinholeCamera& camera, size_t camera_idx, const std::vector<BundleView>& views) {
   constexpr int kAcross = 6, kDown = 4;
   std::set<int> cells;
@@ -116,7 +116,7 @@ void warn_of_camera(const PinholeCamera& camera, const CameraFit& fit, std::vect
   if (fit.rms_px > kBadRms) {
     warnings.push_back(
         fmt::format("{}: corners are {:.2f} px (RMS) from where the calibration puts them; {:g} px is "
-                    "bad: a bent board, a blurred or a moving picture",
+                    "bad: a bent board, a blurred or a moving image",
                     camera.name, fit.rms_px, kBadRms));
   }
   if (fit.num_views < kFewViews) {
@@ -131,8 +131,8 @@ void warn_of_camera(const PinholeCamera& camera, const CameraFit& fit, std::vect
   }
   if (fit.coverage < kLittleCoverage) {
     warnings.push_back(
-        fmt::format("{}: the board was seen in {:.0f} % of the picture only; elsewhere the lens is a guess",
-                    camera.name, 100 * fit.coverage));
+        fmt::format("{}: the board was seen in {:.0f} % of the image only; elsewhere the lens is a guess", camera.name,
+                    100 * fit.coverage));
   }
 }
 

@@ -21,7 +21,7 @@ struct CameraFit {
   int num_views = 0;       // of the board, that the fit used
   double rms_px = 0;       // root mean square distance of a corner from where the fit puts it
   double focal_sd_px = 0;  // standard deviation of the focal length that the camera's own views leave
-  double coverage = 0;     // part of the picture (6 x 4 cells) in which there were corners
+  double coverage = 0;     // part of the image (6 x 4 cells) in which there were corners
 };
 
 struct CameraCalibration {

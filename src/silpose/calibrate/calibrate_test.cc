@@ -26,7 +26,7 @@ PinholeCamera lens(const Eigen::Vector3d& camera_centre, double focal, const cha
   return camera;
 }
 
-// Where a board is carried around a room, print towards the first camera, somewhere in its picture; instant 0: on the
+// Where a board is carried around a room, print towards the first camera, somewhere in its image; instant 0: on the
 // floor.
 std::vector<Rigid3> walk(const PinholeCamera& camera, int count, double tilt, Rng& rng) {
   std::vector<Rigid3> places = {board_on_floor(kBoard, 0.1, 0.3)};
@@ -62,7 +62,7 @@ void expect_same_lens(const PinholeCamera& found, const PinholeCamera& truth, do
   EXPECT_NEAR(found.fy / truth.fy, 1, tolerance);
   EXPECT_NEAR(found.cx, truth.cx, 3);
   EXPECT_NEAR(found.cy, truth.cy, 3);
-  // What the coefficients do, not what they are: how they bend what is seen near the picture's rims. (A shift of all of
+  // What the coefficients do, not what they are: how they bend what is seen near the image's rims. (A shift of all of
   // it is hardly distinguishable from a rotation of the camera.)
   std::vector<Eigen::Vector2d> off;
   for (const Eigen::Vector2d& place : {Eigen::Vector2d(0.1, 0.5), {0.9, 0.5}, {0.5, 0.1}, {0.5, 0.9}}) {
@@ -78,14 +78,14 @@ double distance_between(const PinholeCamera& a, const PinholeCamera& b) {
   return (a.centre_in_world() - b.centre_in_world()).norm();
 }
 
-TEST(CalibrateTest, ACameraFromPicturesOfABoard) {
+TEST(CalibrateTest, ACameraFromImagesOfABoard) {
   const PinholeCamera full = lens({0, 1.5, 2.2}, 620, "cam"), truth = full.resized(480, 360);
   const BoardFilm film(truth);
   Rng rng(11);
   const auto places = walk(full, 12, 0.6, rng);
   CameraSightings seen{.name = "cam", .width = 480, .height = 360};
   for (size_t i = 0; i < places.size(); ++i) {
-    auto corners = find_board(film.picture(kBoard, places[i], rng), kBoard);
+    auto corners = find_board(film.image(kBoard, places[i], rng), kBoard);
     if (corners) seen.sightings.push_back({static_cast<int64_t>(i), std::move(*corners)});
   }
   ASSERT_GE(seen.sightings.size(), 8);

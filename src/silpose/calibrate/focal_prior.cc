@@ -29,7 +29,7 @@ constexpr double kMetadataDeviation = 0.08;
 }  // namespace
 
 FocalPrior usual_focal_length(int width, int height) {
-  check(width > 0 && height > 0, "usual_focal_length: picture {}x{}", width, height);
+  check(width > 0 && height > 0, "usual_focal_length: image {}x{}", width, height);
   const double larger = std::max(width, height), smaller = std::min(width, height);
   if (larger >= kSquarest * smaller) return {kUsual * larger, kUsualDeviation};
   const double ratio = std::log(kOtherwise / kSquarest);
@@ -37,12 +37,12 @@ FocalPrior usual_focal_length(int width, int height) {
 }
 
 double focal_px_of_mm35(double mm, int width, int height) {
-  check(mm > 0 && width > 0 && height > 0, "focal_px_of_mm35: {} mm, picture {}x{}", mm, width, height);
+  check(mm > 0 && width > 0 && height > 0, "focal_px_of_mm35: {} mm, image {}x{}", mm, width, height);
   return mm / kFilmDiagonal_mm * std::hypot(width, height);
 }
 
 double focal_px_of_view(double angle, int width, int height) {
-  check(angle > 0 && angle < std::numbers::pi && width > 0 && height > 0, "focal_px_of_view: {} rad, picture {}x{}",
+  check(angle > 0 && angle < std::numbers::pi && width > 0 && height > 0, "focal_px_of_view: {} rad, image {}x{}",
         angle, width, height);
   return 0.5 * std::max(width, height) / std::tan(0.5 * angle);
 }

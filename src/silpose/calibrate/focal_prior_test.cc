@@ -18,7 +18,7 @@ TEST(FocalPrior, CoversCalibratedPhonesEitherWayUp) {
   EXPECT_DOUBLE_EQ(usual_focal_length(640, 480).focal_px, 0.75 * 640);
 }
 
-TEST(FocalPrior, SquarePictureIsCropped) {
+TEST(FocalPrior, SquareImageIsCropped) {
   const FocalPrior square = usual_focal_length(720, 720);
   EXPECT_GT(square.focal_px, usual_focal_length(960, 720).focal_px);
   EXPECT_LT(square.focal_px, usual_focal_length(1280, 720).focal_px);

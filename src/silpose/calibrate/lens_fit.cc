@@ -42,7 +42,7 @@ Result<LensFit> calibrate_views(const Board& board, const CameraSightings& camer
   cv::Mat matrix, distortion, deviations;
   try {
     std::vector<cv::Mat> rotations, translations;
-    // Four distortion coefficients: a fifth (k3) is determined only by pictures that are full of corners up to their
+    // Four distortion coefficients: a fifth (k3) is determined only by images that are full of corners up to their
     // edges.
     cv::calibrateCamera(points, pixels, {camera.width, camera.height}, matrix, distortion, rotations, translations,
                         deviations, cv::noArray(), view_rms, cv::CALIB_FIX_K3);
@@ -86,11 +86,11 @@ std::vector<size_t> choose_views(const std::vector<Eigen::VectorXd>& features, s
   return chosen;
 }
 
-Eigen::VectorXd view_feature(const Board& board, double picture_width, const Sighting& sighting) {
+Eigen::VectorXd view_feature(const Board& board, double image_width, const Sighting& sighting) {
   const size_t count = sighting.corners.size(), row = static_cast<size_t>(board.columns);
   Eigen::VectorXd feature(8);
   feature << sighting.corners[0], sighting.corners[row - 1], sighting.corners[count - row], sighting.corners[count - 1];
-  return feature / picture_width;
+  return feature / image_width;
 }
 
 Result<LensFit> fit_lens(const Board& board, const CameraSightings& camera) {

@@ -16,7 +16,7 @@
 
 namespace silpose {
 
-inline constexpr double kNearestViews = 0.02;  // of the picture's width: nearer views are redundant
+inline constexpr double kNearestViews = 0.02;  // of the image's width: nearer views are redundant
 
 // Views that differ from each other most, as indices in ascending order: at most `most`, no two nearer than `nearest`.
 // `features`: one vector per view; their Euclidean distance is how different two are. The first chosen is the first
@@ -25,8 +25,8 @@ inline constexpr double kNearestViews = 0.02;  // of the picture's width: nearer
 [[nodiscard]] std::vector<size_t> choose_views(const std::vector<Eigen::VectorXd>& features, size_t most,
                                                double nearest);
 
-// How a view looks: its outer corners, in parts of the picture's width. [8]
-[[nodiscard]] Eigen::VectorXd view_feature(const Board& board, double picture_width, const Sighting& sighting);
+// How a view looks: its outer corners, in parts of the image's width. [8]
+[[nodiscard]] Eigen::VectorXd view_feature(const Board& board, double image_width, const Sighting& sighting);
 
 struct LensFit {
   PinholeCamera camera;       // its pose is left unchanged

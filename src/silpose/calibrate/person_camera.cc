@@ -31,7 +31,7 @@ using Residual = Eigen::Vector4d;  // feet x, y and head x, y
 const Unknowns kPriorMean = (Unknowns() << 0, 0.03, 0, std::log(1.4), 0.22, 0.02, 0).finished();
 const Unknowns kPriorDeviation = (Unknowns() << 1, 0.18, 0.02, 0.4, 0.12, 0.02, 0.03).finished();
 // Extents are taken as medians over a stride, since feet alternate and heads bob with every step: a window every half
-// of it. Deviations of such a median, in parts of the body's height in the picture; degrees of freedom of Student's t;
+// of it. Deviations of such a median, in parts of the body's height in the image; degrees of freedom of Student's t;
 // and as many windows count in full: of a longer clip they resemble each other.
 constexpr double kStride_s = 1;
 const Residual kNoise(0.02, 0.015, 0.02, 0.01);
@@ -227,7 +227,7 @@ std::vector<PersonExtent> over_strides(std::span<const PersonExtent> extents, do
 
 std::optional<CameraEstimate> estimate_camera(std::span<const PersonExtent> extents, int width, int height,
                                               double body_height_m, const FocalPrior& focal_length) {
-  check(width > 0 && height > 0 && body_height_m > 0, "estimate_camera: picture {}x{}, body {} m", width, height,
+  check(width > 0 && height > 0 && body_height_m > 0, "estimate_camera: image {}x{}, body {} m", width, height,
         body_height_m);
   check(focal_length.focal_px > 0 && focal_length.deviation >= 0, "estimate_camera: focal length {} px within {}",
         focal_length.focal_px, focal_length.deviation);

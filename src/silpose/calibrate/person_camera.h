@@ -1,6 +1,6 @@
 // estimate_camera(): focal length, tilt, roll and height of an uncalibrated camera, from where the head and the feet of
 // an upright person on the floor are seen, and how tall the person is. A person who comes nearer determines how high
-// the camera is and where the horizon is; one who is seen leaning at the picture's sides, where the picture is tilted,
+// the camera is and where the horizon is; one who is seen leaning at the image's sides, where the image is tilted,
 // determines the focal length. What a clip does not determine stays at its prior (of the focal length: the caller's),
 // as its deviation shows.
 // Based on: metrology of a single view (references.bib: criminisi2000), as a maximum a posteriori fit with residuals of

@@ -29,7 +29,7 @@ PersonExtent extent_at(const PinholeCamera& camera, double x, double z, double t
   return extent;
 }
 
-// Walks a zigzag between `nearest` and `farthest` (z), across the picture.
+// Walks a zigzag between `nearest` and `farthest` (z), across the image.
 std::vector<PersonExtent> walk(const PinholeCamera& camera, double nearest, double farthest) {
   std::vector<PersonExtent> extents;
   for (int i = 0; i < 96; ++i) {
@@ -83,7 +83,7 @@ TEST(EstimateCamera, SaysHowLittleOneDepthTells) {
   expect_inside(flat->focal_px, 560, 2);
 }
 
-TEST(EstimateCamera, TiltAtThePicturesSidesTellsTheFocalLength) {
+TEST(EstimateCamera, TiltAtTheImagesSidesTellsTheFocalLength) {
   for (const double focal_px : {330.0, 800.0}) {
     const double off = std::log(focal_px / kUsual.focal_px);
     const auto tilted = estimate_camera(walk(camera_at(focal_px, 2.2, 20), 1, -2), 640, 480, kBodyHeight, kUsual);
@@ -114,7 +114,7 @@ TEST(EstimateCamera, KnownFocalLengthIsKept) {
   EXPECT_LT(known->tilt.deviation, 0.7 * estimate_camera(extents, 640, 480, kBodyHeight, {900, 0.2})->tilt.deviation);
   const auto wrong = estimate_camera(extents, 640, 480, kBodyHeight, {600, 0});
   EXPECT_EQ(wrong->focal_px.mean, 600);
-  // The picture determines the horizon: it stays where it is.
+  // The image determines the horizon: it stays where it is.
   EXPECT_NEAR(600 * std::tan(wrong->tilt.mean), 900 * std::tan(to_radians(8)), 12);
 }
 

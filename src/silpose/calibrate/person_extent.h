@@ -17,7 +17,7 @@ struct PersonExtent {
   [[nodiscard]] double height() const { return feet.y() - head.y(); }
 };
 
-// Its time is left to the caller. Nothing where the mask is empty, is cut by the picture's edge, is under 24 pixels
+// Its time is left to the caller. Nothing where the mask is empty, is cut by the image's edge, is under 24 pixels
 // high, or is much wider than high.
 [[nodiscard]] std::optional<PersonExtent> person_extent(const Mask& mask);
 

@@ -14,7 +14,7 @@ namespace {
 constexpr size_t kMostShared = 20;
 
 // The pose of b relative to a, of those that single shared instants give, that fits all instants best: with the
-// smallest median distance of corners in a's pictures. A single view of ambiguous tilt, as of a board seen head-on,
+// smallest median distance of corners in a's images. A single view of ambiguous tilt, as of a board seen head-on,
 // cannot corrupt it.
 Rigid3 a_from_b(const Board& board, const PinholeCamera& camera_a, const SeenBoards& a, const SeenBoards& b,
                 const std::vector<int64_t>& instants) {
@@ -52,16 +52,15 @@ SeenBoards seen_boards(const Board& board, const PinholeCamera& camera, const st
   return seen;
 }
 
-std::vector<int64_t> shared_instants(const Board& board, const SeenBoards& a, const SeenBoards& b,
-                                     double picture_width) {
+std::vector<int64_t> shared_instants(const Board& board, const SeenBoards& a, const SeenBoards& b, double image_width) {
   std::vector<int64_t> shared;
   std::vector<Eigen::VectorXd> features;
   for (const auto& [instant, of_a] : a) {
     const auto of_b = b.find(instant);
     if (of_b == b.end()) continue;
     Eigen::VectorXd feature(16);
-    feature << view_feature(board, picture_width, *of_a.sighting),
-        view_feature(board, picture_width, *of_b->second.sighting);
+    feature << view_feature(board, image_width, *of_a.sighting),
+        view_feature(board, image_width, *of_b->second.sighting);
     shared.push_back(instant);
     features.push_back(std::move(feature));
   }

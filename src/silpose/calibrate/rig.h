@@ -27,7 +27,7 @@ using SeenBoards = std::map<int64_t, SeenBoard>;
 
 // Instants at which both cameras saw the board, up to 20 that differ most.
 [[nodiscard]] std::vector<int64_t> shared_instants(const Board& board, const SeenBoards& a, const SeenBoards& b,
-                                                   double picture_width);
+                                                   double image_width);
 
 // Gives every camera its pose relative to the first, which keeps its own: along the tree of pairs that share most.
 // Errors: a camera that shares no instant with the others, by name.

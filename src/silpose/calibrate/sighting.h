@@ -8,7 +8,7 @@
 
 namespace silpose {
 
-// The board in one picture of a camera.
+// The board in one image of a camera.
 struct Sighting {
   int64_t instant = 0;                   // the same number in all cameras is the same time and place of the board
   std::vector<Eigen::Vector2d> corners;  // [N] pixels, as find_board() gives them

@@ -60,7 +60,7 @@ struct Side {
   std::map<int64_t, double> times;  // of every frame with a pose or joints
 };
 
-// Pictures of two cameras are not compared. A side without a camera, or with one that has no name of its own, is taken
+// Images of two cameras are not compared. A side without a camera, or with one that has no name of its own, is taken
 // to mean the other's.
 bool see_the_same(const Recorded& result, const Recorded& truth) {
   if (result.cameras.empty() || truth.cameras.empty()) return true;
@@ -92,7 +92,7 @@ std::optional<Eigen::Vector3d> origin_of(const RigProfile& profile, const Joints
 
 void add_joint_errors(const RigProfile& profile, const JointsOfFrame& result, const JointsOfFrame& truth,
                       FrameFigures& figures) {
-  std::vector<size_t> shared, seen;  // joints that both have, and have in the picture
+  std::vector<size_t> shared, seen;  // joints that both have, and have in the image
   for (size_t k = 0; k < result.size(); ++k) {
     if (!result[k] || !truth[k]) continue;
     shared.push_back(k);

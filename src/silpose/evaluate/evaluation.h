@@ -24,7 +24,7 @@ namespace silpose {
 struct Recorded {
   std::optional<PoseTable> poses;
   std::optional<JointTable> joints;
-  std::map<int64_t, std::filesystem::path> mask_files;  // frame number -> picture, of the first camera
+  std::map<int64_t, std::filesystem::path> mask_files;  // frame number -> image, of the first camera
   std::vector<PinholeCamera> cameras;
 };
 

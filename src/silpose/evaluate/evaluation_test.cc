@@ -138,7 +138,7 @@ TEST(Evaluate, ARigIsEvaluatedByItsOwnLandmarks) {
   EXPECT_NEAR(evaluation.find("joint_error_root_mm")->mean, 10, 1e-9);
 }
 
-TEST(Evaluate, PicturesOfTwoCamerasAreNotCompared) {
+TEST(Evaluate, ImagesOfTwoCamerasAreNotCompared) {
   Recorded result, truth;
   truth.joints = JointTable{.rows = {joint(0, "left_hand", {0, 1, 1}, {100, 200})}};
   result.joints = truth.joints;

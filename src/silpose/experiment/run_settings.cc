@@ -115,7 +115,7 @@ const OptionTable<RunSettings>& clip_setting_table() {
        {"segmenter", &RunSettings::segmenter, words(std::array<std::string_view, 3>{"learned", "background", "masks"}),
         "masks: the videos are masks"},
        {"background", &RunSettings::background,
-        "For `background`, one per video: auto, or a picture of the empty scene"}}};
+        "For `background`, one per video: auto, or an image of the empty scene"}}};
   return kTable;
 }
 

@@ -48,7 +48,7 @@ struct RunSettings {
   std::string truth;                      // a folder with joints.csv, or with surfaces as numbered .ply files
   std::optional<double> truth_above;      // m: of surfaces, only what lies above this y of the world counts
   std::string segmenter = "learned";      // learned, background, or masks: the videos are masks
-  std::vector<std::string> background;    // for `background`: auto, or a picture of the empty scene, one per video
+  std::vector<std::string> background;    // for `background`: auto, or an image of the empty scene, one per video
 
   [[nodiscard]] bool is_recorded() const { return !clip.empty(); }
   [[nodiscard]] RunKind run_kind() const {

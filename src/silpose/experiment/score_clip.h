@@ -34,9 +34,9 @@ inline constexpr double kWrongMm = 50;
 Result<RunResult> score_clip(const ClipTruth& truth, const BodyModel& body, std::span<const PinholeCamera> cameras,
                              std::span<const StepReport> reports);
 
-// The same columns for the keypoints that the network found in the first camera's pictures: turned into the world's
+// The same columns for the keypoints that the network found in the first camera's images: turned into the world's
 // axes, the middle of the hips at the world's origin, so that joint_error_mm is absent; joint_error_px is of its
-// landmarks in the picture. Nothing is claimed. Errors: as score_clip(); a truth of surfaces. REQUIRES: an instant.
+// landmarks in the image. Nothing is claimed. Errors: as score_clip(); a truth of surfaces. REQUIRES: an instant.
 Result<RunResult> score_keypoints(const ClipTruth& truth, const BodyModel& body, const PinholeCamera& camera,
                                   std::span<const ClipInstant> clip);
 

@@ -1,4 +1,4 @@
-// SvgPlot: bars by category or lines over numbers, as one SVG picture with axes, ticks, labels and a legend.
+// SvgPlot: bars by category or lines over numbers, as one SVG image with axes, ticks, labels and a legend.
 // Threads: values and a function without state.
 #pragma once
 

@@ -78,7 +78,7 @@ TEST(SvgPlot, LinesBreakWhereNothingIs) {
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
 }
 
-TEST(SvgPlot, NothingToDrawIsStillAPicture) {
+TEST(SvgPlot, NothingToDrawIsStillAnImage) {
   EXPECT_TRUE(is_well_formed(svg_from_plot({})));
   EXPECT_TRUE(is_well_formed(svg_from_plot({.title = "", .categories = {"a"}, .series = {{"s", {}, {kNothing}}}})));
   EXPECT_THROW((void)svg_from_plot({.categories = {"a"}, .series = {{"s", {}, {1, 2}}}}), std::invalid_argument);

@@ -38,7 +38,7 @@ class TrackingRuns {
   // (of the masks given to the tracker, first camera) and, of motion capture, retargeting_residual_deg. Of a recorded
   // clip: those of score_clip() and the tracker's times or, of kind `keypoints`, those of score_keypoints(). The body's
   // height counts as known. Errors: a body, motion, view or option that is not there; the
-  // motion does not fit into the picture. Of a clip: those of read_clip_cameras(), read_clip_truth() and
+  // motion does not fit into the image. Of a clip: those of read_clip_cameras(), read_clip_truth() and
   // ClipReader::read(); videos of another size than their cameras.
   Result<std::optional<RunResult>> run(const RunSettings& settings, uint64_t seed, const std::function<bool()>& go_on);
 

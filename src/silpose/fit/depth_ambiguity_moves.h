@@ -1,4 +1,4 @@
-// Poses that are far from one another and yet explain where a picture shows limbs: two symmetric limbs that were
+// Poses that are far from one another and yet explain where an image shows limbs: two symmetric limbs that were
 // exchanged, and a body that is turned. From an oblique view neither is found limb by limb, as everything in between
 // fits worse.
 // Based on: kinematic jump processes (references.bib: sminchisescu2003).

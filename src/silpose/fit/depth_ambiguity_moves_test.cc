@@ -40,7 +40,7 @@ double seen_apart(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (b - a - ray * ray.dot(b - a)).norm();
 }
 
-TEST(ExchangedInPicture, HandsAreSeenWhereTheOtherWas) {
+TEST(ExchangedInImage, HandsAreSeenWhereTheOtherWas) {
   const Skeleton& skeleton = human().skeleton;
   const std::vector<Limb>& limbs = human().profile.limbs;
   const std::vector<double> pose = reaching_pose();
@@ -70,7 +70,7 @@ TEST(ExchangedInPicture, HandsAreSeenWhereTheOtherWas) {
   EXPECT_EQ(found, 1);
 }
 
-TEST(TurnedInPicture, HandsAndFeetStayWhereTheyAreSeen) {
+TEST(TurnedInImage, HandsAndFeetStayWhereTheyAreSeen) {
   const std::vector<double> pose = reaching_pose();
   const auto turned = turned_in_image(human(), pose, to_radians(40), kEye);
   ASSERT_EQ(turned.size(), pose.size());
@@ -81,7 +81,7 @@ TEST(TurnedInPicture, HandsAndFeetStayWhereTheyAreSeen) {
   }
 }
 
-TEST(PictureMoves, StayWithinLimitsAndABodyWithoutPairsIsOnlyTurned) {
+TEST(ImageMoves, StayWithinLimitsAndABodyWithoutPairsIsOnlyTurned) {
   Rng rng(1);
   const auto moves = depth_ambiguity_moves(human(), reaching_pose(), kEye, rng);
   EXPECT_EQ(moves.size(), 6u);  // legs, arms, both; turned either way; mirrored

@@ -67,12 +67,12 @@ TEST(ReflectedLimb, KeepsWhereTheJointsAreSeenFromAfar) {
     for (const auto& variant : reflected_limb(body, limb, pose, camera_centre)) {
       ++found;
       const auto after = landmark_positions(body, variant);
-      double in_picture = 0, in_depth = 0;
+      double in_image = 0, in_depth = 0;
       for (size_t i = 0; i < after.size(); ++i) {
-        in_picture = std::max(in_picture, (after[i] - before[i]).head<2>().norm());
+        in_image = std::max(in_image, (after[i] - before[i]).head<2>().norm());
         in_depth = std::max(in_depth, std::abs(after[i].z() - before[i].z()));
       }
-      EXPECT_LT(in_picture, 0.06);
+      EXPECT_LT(in_image, 0.06);
       EXPECT_GT(in_depth, 0.03);
       for (size_t d = 0; d < pose.size(); ++d) {
         const bool own = std::ranges::find(limb.dofs, static_cast<int>(d)) != limb.dofs.end();

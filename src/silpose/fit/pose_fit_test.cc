@@ -66,7 +66,7 @@ TEST_F(PoseFitTest, StaysInsideTheLimits) {
   }
 }
 
-TEST_F(PoseFitTest, NothingInThePictureLeavesThePrior) {
+TEST_F(PoseFitTest, NothingInTheImageLeavesThePrior) {
   std::vector<double> away = {0, 0.5, 40, 0, 0, 0, 0, 0};  // behind the camera
   CoverageLikelihood::Scratch scratch(likelihood_);
   const PoseFit fit = fit_pose(likelihood_, pose_prior_, see({0, 0.5, 0, 0, 0, 0, 0, 0}), prior(away, 0.1),

@@ -1,4 +1,4 @@
-// PosePrior: what is known of a pose before any picture: joints stay within their limits and near rest, the body
+// PosePrior: what is known of a pose before any image: joints stay within their limits and near rest, the body
 // does not pass through itself, and nothing of it lies just below the floor y = 0 (where any point lies deep below, the
 // floor is assumed to be elsewhere, and nothing is pushed). Derived from mesh and skeleton of any body.
 // All of it is soft: least squares, as the fit of the silhouette uses. Threads: constant after construction.

@@ -14,7 +14,7 @@
 namespace silpose {
 namespace {
 
-constexpr int kLargestPicture = 16384;   // pixels a side
+constexpr int kLargestImage = 16384;     // pixels a side
 constexpr double kLargestTurn = 1e6;     // radians; beyond it, no digits are left for the direction [guess]
 constexpr double kPixelCentre = 0.5;     // the library's pixels less OpenCV's
 constexpr double kFarCentre = 100;       // a camera further from the origin than this is probably in millimetres
@@ -98,8 +98,8 @@ Result<FileCamera> read_camera(const std::string& file, std::string_view key, co
   auto size = numbers(table.get("size"), 2, 2, where("size"));
   if (!size) return size.failure();
   for (const double pixels : *size) {
-    if (!(pixels >= 1 && pixels <= kLargestPicture && pixels == std::floor(pixels))) {
-      return error("{} is not [width, height] in whole pixels, 1 to {}", where("size"), kLargestPicture);
+    if (!(pixels >= 1 && pixels <= kLargestImage && pixels == std::floor(pixels))) {
+      return error("{} is not [width, height] in whole pixels, 1 to {}", where("size"), kLargestImage);
     }
   }
   camera.width = static_cast<int>((*size)[0]);

@@ -63,7 +63,7 @@ Eigen::Vector3d PinholeCamera::ray_from_pixel(const Eigen::Vector2d& pixel) cons
   const Eigen::Vector2d distorted((pixel.x() - cx) / fx, (pixel.y() - cy) / fy);
   Eigen::Vector2d x = distorted;
   if (has_distortion()) {
-    // Newton's method. Steps that do not come nearer are halved: strong distortion folds far outside the picture.
+    // Newton's method. Steps that do not come nearer are halved: strong distortion folds far outside the image.
     Eigen::Matrix2d jacobian;
     Eigen::Vector2d residual = distort(distortion, x, &jacobian) - distorted;
     for (int iteration = 0; iteration < 50 && residual.squaredNorm() > 1e-28; ++iteration) {

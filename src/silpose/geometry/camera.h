@@ -41,7 +41,7 @@ struct PinholeCamera {
   // The camera's position, world coordinates.
   [[nodiscard]] Eigen::Vector3d centre_in_world() const;
 
-  // The same view drawn at another picture size.
+  // The same view drawn at another image size.
   [[nodiscard]] PinholeCamera resized(int new_width, int new_height) const;
 };
 
@@ -49,7 +49,7 @@ struct PinholeCamera {
 // focal length 1.2 x the larger side. A plain viewpoint; users' cameras: calibrate/focal_prior.h.
 PinholeCamera default_camera(int width, int height, double distance = 5.5);
 
-// A camera at `camera_centre` that looks at `target`, +Y up in the picture. Metres; focal length in pixels.
+// A camera at `camera_centre` that looks at `target`, +Y up in the image. Metres; focal length in pixels.
 PinholeCamera look_at_camera(int width, int height, double focal_px, const Eigen::Vector3d& camera_centre,
                              const Eigen::Vector3d& target);
 

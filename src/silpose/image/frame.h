@@ -10,7 +10,7 @@
 namespace silpose {
 
 struct Frame {
-  int64_t index = 0;              // counted from the first image of the video; of numbered pictures their number
+  int64_t index = 0;              // counted from the first image of the video; of numbered images their number
   int64_t time_ns = 0;            // of that image in the video's own time
   std::vector<ByteImage> images;  // [C] 8-bit B, G, R
 };

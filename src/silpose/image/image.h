@@ -1,4 +1,4 @@
-// Image<T>: a picture in memory, row-major, channels interleaved. Colour pictures are 8-bit B, G, R (OpenCV's order).
+// Image<T>: an image in memory, row-major, channels interleaved. Colour images are 8-bit B, G, R (OpenCV's order).
 // Threads: a value.
 #pragma once
 
@@ -25,7 +25,7 @@ class Image {
   [[nodiscard]] int channels() const { return channels_; }
   [[nodiscard]] bool empty() const { return data_.empty(); }
 
-  // REQUIRES: inside the picture.
+  // REQUIRES: inside the image.
   T& at(int x, int y, int channel = 0) { return data_[offset(x, y, channel)]; }
   const T& at(int x, int y, int channel = 0) const { return data_[offset(x, y, channel)]; }
 

@@ -12,7 +12,7 @@
 namespace silpose {
 namespace {
 
-// The decoders print about broken files instead of only failing, or return half a picture: so look first whether the
+// The decoders print about broken files instead of only failing, or return half an image: so look first whether the
 // file continues to its end mark.
 bool is_cut_off(std::string_view bytes) {
   if (bytes.substr(0, 8) == "\x89PNG\r\n\x1a\n") {
@@ -32,7 +32,7 @@ bool is_cut_off(std::string_view bytes) {
   return false;
 }
 
-// Width and height, of a format whose header is easily read: so that a huge picture is refused before it takes memory.
+// Width and height, of a format whose header is easily read: so that a huge image is refused before it takes memory.
 std::optional<std::pair<uint64_t, uint64_t>> size_in_header(std::string_view bytes) {
   const auto number = [&](size_t at, size_t length) {
     uint64_t value = 0;
@@ -50,7 +50,7 @@ std::optional<std::pair<uint64_t, uint64_t>> size_in_header(std::string_view byt
   return std::nullopt;
 }
 
-// A picture as OpenCV reads it under `flags`.
+// An image as OpenCV reads it under `flags`.
 Result<cv::Mat> decode(const std::filesystem::path& path, int flags) {
   std::error_code code;
   if (!std::filesystem::exists(path, code)) return error("{}: no such file", path.string());
@@ -59,7 +59,7 @@ Result<cv::Mat> decode(const std::filesystem::path& path, int flags) {
   const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
   if (!stream) return error("{}: cannot be read", path.string());
   if (bytes.empty()) return error("{}: the file is empty", path.string());
-  if (is_cut_off(bytes)) return error("{}: the picture is cut off", path.string());
+  if (is_cut_off(bytes)) return error("{}: the image is cut off", path.string());
   const auto too_large = [&](uint64_t width, uint64_t height) {
     return error("{}: {}x{} are more pixels than the {} that can be handled", path.string(), width, height,
                  kMostPixels);
@@ -73,7 +73,7 @@ Result<cv::Mat> decode(const std::filesystem::path& path, int flags) {
   } catch (const cv::Exception&) {  // of a size that OpenCV refuses
     decoded.release();
   }
-  if (decoded.empty()) return error("{}: not a picture", path.string());
+  if (decoded.empty()) return error("{}: not an image", path.string());
   if (decoded.total() > kMostPixels) {
     return too_large(static_cast<uint64_t>(decoded.cols), static_cast<uint64_t>(decoded.rows));
   }
@@ -92,14 +92,14 @@ cv::Mat view_of(const ByteImage& image) {
   return {image.height(), image.width(), CV_8UC(image.channels()), const_cast<uint8_t*>(image.pixels().data())};
 }
 
-Result<void> encode(const std::filesystem::path& path, const cv::Mat& picture) {
+Result<void> encode(const std::filesystem::path& path, const cv::Mat& image) {
   std::vector<uint8_t> encoded;
   try {
-    if (!cv::imencode(path.extension().string(), picture, encoded)) encoded.clear();
+    if (!cv::imencode(path.extension().string(), image, encoded)) encoded.clear();
   } catch (const cv::Exception&) {
     encoded.clear();
   }
-  if (encoded.empty()) return error("{}: no picture format for this name", path.string());
+  if (encoded.empty()) return error("{}: no image format for this name", path.string());
   std::ofstream stream(path, std::ios::binary);
   stream.write(reinterpret_cast<const char*>(encoded.data()), static_cast<std::streamsize>(encoded.size()));
   stream.close();

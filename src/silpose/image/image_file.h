@@ -1,4 +1,4 @@
-// Pictures as files (PNG, JPEG, whatever OpenCV reads).
+// Images as files (PNG, JPEG, whatever OpenCV reads).
 // Threads: functions without state.
 #pragma once
 
@@ -12,10 +12,10 @@
 
 namespace silpose {
 
-// Larger pictures (than 8192x8192) are refused: a clip of them fills any memory.
+// Larger images (than 8192x8192) are refused: a clip of them fills any memory.
 inline constexpr uint64_t kMostPixels = uint64_t{1} << 26;
 
-// 16-bit and transparent pictures come as 8-bit colour. Errors: no such file, empty, not a picture, more than
+// 16-bit and transparent images come as 8-bit colour. Errors: no such file, empty, not an image, more than
 // kMostPixels.
 Result<ByteImage> read_colour_image(const std::filesystem::path& path);  // 3 channels B, G, R
 Result<ByteImage> read_grey_image(const std::filesystem::path& path);    // 1 channel

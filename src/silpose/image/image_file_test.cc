@@ -64,11 +64,11 @@ TEST_F(ImageFileTest, NamesWhatIsWrongWithAFile) {
   EXPECT_THAT(read_mask(folder_).error().message, EndsWith(": not a file"));
   std::ofstream(folder_ / "empty.png").close();
   EXPECT_THAT(read_colour_image(folder_ / "empty.png").error().message, EndsWith("empty.png: the file is empty"));
-  std::ofstream(folder_ / "text.png") << "not at all a picture";
-  EXPECT_THAT(read_grey_image(folder_ / "text.png").error().message, EndsWith("text.png: not a picture"));
+  std::ofstream(folder_ / "text.png") << "not at all an image";
+  EXPECT_THAT(read_grey_image(folder_ / "text.png").error().message, EndsWith("text.png: not an image"));
 }
 
-TEST_F(ImageFileTest, RefusesPicturesThatAreCutOff) {
+TEST_F(ImageFileTest, RefusesImagesThatAreCutOff) {
   for (const char* name : {"cut.png", "cut.jpg"}) {
     ASSERT_TRUE(write_image(folder_ / name, gradient(64, 64, 3)).ok());
     ASSERT_TRUE(read_colour_image(folder_ / name).ok());
@@ -79,7 +79,7 @@ TEST_F(ImageFileTest, RefusesPicturesThatAreCutOff) {
   }
 }
 
-TEST_F(ImageFileTest, RefusesHugePicturesBeforeTheyTakeMemory) {
+TEST_F(ImageFileTest, RefusesHugeImagesBeforeTheyTakeMemory) {
   for (const char* name : {"huge.png", "huge.jpg"}) {
     write_image(folder_ / name, gradient(64, 64, 3)).value();
     std::ifstream stream(folder_ / name, std::ios::binary);
@@ -93,7 +93,7 @@ TEST_F(ImageFileTest, RefusesHugePicturesBeforeTheyTakeMemory) {
   }
 }
 
-TEST_F(ImageFileTest, DeepAndTransparentPicturesComeAsEightBitColour) {
+TEST_F(ImageFileTest, DeepAndTransparentImagesComeAsEightBitColour) {
   DepthImage deep(4, 3, 1, 0x8012);
   write_depth_image(folder_ / "deep.png", deep).value();
   const ByteImage image = read_colour_image(folder_ / "deep.png").value();
@@ -110,7 +110,7 @@ TEST_F(ImageFileTest, SaysWhenTheDiskIsFull) {
 TEST_F(ImageFileTest, SaysWhenItCannotWrite) {
   const ByteImage image = gradient(4, 4, 3);
   EXPECT_THAT(write_image(folder_ / "no_such_folder" / "a.png", image).error().message, HasSubstr("cannot be written"));
-  EXPECT_THAT(write_image(folder_ / "a.nonsense", image).error().message, HasSubstr("no picture format"));
+  EXPECT_THAT(write_image(folder_ / "a.nonsense", image).error().message, HasSubstr("no image format"));
   EXPECT_THROW((void)write_image(folder_ / "a.png", ByteImage(4, 4, 2)), std::invalid_argument);
 }
 

@@ -1,4 +1,4 @@
-// Keypoint2D: a point of the body that was found in a picture. Threads: a value.
+// Keypoint2D: a point of the body that was found in an image. Threads: a value.
 #pragma once
 
 #include <string>

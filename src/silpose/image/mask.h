@@ -1,4 +1,4 @@
-// Mask: a binary picture, one bit per pixel, and its counting kernels. A silhouette is a Mask.
+// Mask: a binary image, one bit per pixel, and its counting kernels. A silhouette is a Mask.
 // Bit x of row y is bit (x % 64) of word (x / 64) of that row; bits beyond the width are always 0.
 // Threads: a value; const functions are safe.
 #pragma once
@@ -70,7 +70,7 @@ bool are_adjacent(const Mask& a, const Mask& b);
 // Intersection over union; 1 when both are empty. REQUIRES: equal sizes.
 double intersection_over_union(const Mask& a, const Mask& b);
 
-// A mask typed as a picture: rows separated by newlines, '#' set, '.' not; blanks around rows and empty rows are
+// A mask typed as an image: rows separated by newlines, '#' set, '.' not; blanks around rows and empty rows are
 // skipped. For tests and messages. Errors: throws std::invalid_argument for other characters or ragged rows.
 Mask mask_from_text(std::string_view text);
 std::string text_from_mask(const Mask& mask);

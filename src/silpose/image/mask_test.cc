@@ -7,7 +7,7 @@
 namespace silpose {
 namespace {
 
-// A picture of noise, whose bits come from a plain congruential generator.
+// An image of noise, whose bits come from a plain congruential generator.
 ByteImage noise_image(int width, int height, uint32_t seed) {
   ByteImage image(width, height);
   for (uint8_t& pixel : image.pixels()) {
@@ -17,7 +17,7 @@ ByteImage noise_image(int width, int height, uint32_t seed) {
   return image;
 }
 
-TEST(Mask, CountsTypedPictures) {
+TEST(Mask, CountsTypedImages) {
   const Mask a = mask_from_text(R"(
     ..##.
     .###.

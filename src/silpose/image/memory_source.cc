@@ -21,10 +21,10 @@ MemorySource::MemorySource(std::vector<ByteImage> images, double fps, std::vecto
 
 Result<std::optional<TimedImage>> MemorySource::next() {
   if (next_ == images_.size()) return std::optional<TimedImage>();
-  TimedImage picture{images_[next_], std::nullopt};
-  if (has_times()) picture.time_ns = times_ns_[next_] - times_ns_.front();
+  TimedImage image{images_[next_], std::nullopt};
+  if (has_times()) image.time_ns = times_ns_[next_] - times_ns_.front();
   ++next_;
-  return std::optional(std::move(picture));
+  return std::optional(std::move(image));
 }
 
 Result<void> MemorySource::rewind() {

@@ -18,9 +18,9 @@ TEST(MemorySource, GivesItsImagesOverAgain) {
   EXPECT_EQ(source.num_frames_hint(), 3);
   for (int pass = 0; pass < 2; ++pass) {
     for (const int grey : {10, 20, 30}) {
-      const std::optional<TimedImage> picture = source.next().value();
-      EXPECT_EQ(picture.value().image.at(3, 2, 1), grey);
-      EXPECT_EQ(picture->time_ns, std::nullopt);
+      const std::optional<TimedImage> image = source.next().value();
+      EXPECT_EQ(image.value().image.at(3, 2, 1), grey);
+      EXPECT_EQ(image->time_ns, std::nullopt);
     }
     EXPECT_FALSE(source.next().value().has_value());
     source.rewind().value();
@@ -31,7 +31,7 @@ TEST(MemorySource, TimesCountFromTheFirstImage) {
   MemorySource source(three_images(), 0, {500, 600, 900});
   EXPECT_TRUE(source.has_times());
   std::vector<int64_t> times;
-  while (const auto picture = source.next().value()) times.push_back(picture->time_ns.value());
+  while (const auto image = source.next().value()) times.push_back(image->time_ns.value());
   EXPECT_THAT(times, testing::ElementsAre(0, 100, 400));
 }
 

@@ -9,7 +9,7 @@ constexpr int kReach = kBlurRadius + 1;  // [definition] cells around the model'
 
 }  // namespace
 
-void CoverageDifference::start(const CoverageEvidence::Raster& raster, int picture_width, int rows_per_cell) {
+void CoverageDifference::start(const CoverageEvidence::Raster& raster, int image_width, int rows_per_cell) {
   if (raster.width != width_ || raster.height != height_) {
     width_ = raster.width;
     height_ = raster.height;
@@ -30,7 +30,7 @@ void CoverageDifference::start(const CoverageEvidence::Raster& raster, int pictu
   }
   num_ends_ = num_end_cells_ = 0;
   raster_ = &raster;
-  picture_width_ = static_cast<float>(picture_width);
+  image_width_ = static_cast<float>(image_width);
   rows_per_cell_ = rows_per_cell;
   model_ = drawn_ = {};
 }
@@ -43,7 +43,7 @@ void CoverageDifference::add_model(const SpanEnds& ends) {
     for (auto* const numbers : {&end_cell_x_, &end_cell_y_, &end_at_, &number_}) numbers->resize(size);
     for (auto* const numbers : {&end_here_, &end_beyond_}) numbers->resize(size);
   }
-  const CellGrid grid{.picture_width = picture_width_,
+  const CellGrid grid{.image_width = image_width_,
                       .cells_per_pixel = 1.0f / static_cast<float>(raster_->cell),
                       .cells_per_row = 1.0f / static_cast<float>(rows_per_cell_),
                       .last_x = width_ - 1,

@@ -20,14 +20,14 @@ namespace silpose {
 // D = w (C_model - C_observed) on the cells, K = G * G the blur applied twice, sigma one cell.
 class CoverageDifference {
  public:
-  // Forgets everything. `picture_width` in pixels: what is outside covers nothing.
-  void start(const CoverageEvidence::Raster& raster, int picture_width, int rows_per_cell);
+  // Forgets everything. `image_width` in pixels: what is outside covers nothing.
+  void start(const CoverageEvidence::Raster& raster, int image_width, int rows_per_cell);
 
   // Adds what the model covers, once: the ends of its spans on sampled rows, rows_per_cell to a cell.
   void add_model(const SpanEnds& ends);
 
   // After add_model(): numbers the cells that hold ends, row by row, and says in which each end lies; -1: outside of
-  // the picture, where it moves nothing. [ends]
+  // the image, where it moves nothing. [ends]
   std::span<const int32_t> number_cells();
   [[nodiscard]] size_t num_end_cells() const { return num_end_cells_; }
   [[nodiscard]] float confidence(size_t end_cell) const {
@@ -51,7 +51,7 @@ class CoverageDifference {
                             Eigen::MatrixXd& hessian);
 
  private:
-  static constexpr int kMargin = AlignedFloats::kLanes;  // cells beyond the picture that stay zero
+  static constexpr int kMargin = AlignedFloats::kLanes;  // cells beyond the image that stay zero
   static size_t stride_of(int length) {
     return AlignedFloats::padded(static_cast<size_t>(length)) + 3 * static_cast<size_t>(kMargin);
   }
@@ -65,7 +65,7 @@ class CoverageDifference {
   const CoverageEvidence::Raster* raster_ = nullptr;
   int width_ = 0, height_ = 0;
   size_t stride_ = 0, rank_stride_ = 0;
-  float picture_width_ = 0;
+  float image_width_ = 0;
   int rows_per_cell_ = 1;
   // Column by column: [width + 1, stride_], the last unread. Before finish(): how much coverage changes from the left.
   std::vector<float> difference_;

@@ -72,7 +72,7 @@ struct CoverageEvidence : PoseLikelihood::Evidence {
 };
 
 // Length of a mask's outline in pixels, by counting the borders between set and unset pixels (corrected for the steps
-// of slanting lines: isotropic outlines come out right on average). The picture's own border does not count.
+// of slanting lines: isotropic outlines come out right on average). The image's own border does not count.
 double outline_length(const Observation& observation);
 
 }  // namespace silpose

@@ -20,7 +20,7 @@ using Vector = hn::Vec<Tag>;
 CellBox place_ends(const SpanEnds& ends, const CellGrid& grid, const PlacedEnds& placed) {
   const hn::CappedTag<float, kSpanSpare> d;
   const hn::RebindToSigned<decltype(d)> di;
-  const auto zero = hn::Zero(d), width = hn::Set(d, grid.picture_width);
+  const auto zero = hn::Zero(d), width = hn::Set(d, grid.image_width);
   const auto cells_per_pixel = hn::Set(d, grid.cells_per_pixel), row_weight = hn::Set(d, grid.cells_per_row);
   const auto last_x = hn::Set(di, grid.last_x), stride = hn::Set(di, grid.stride);
   const auto margin = hn::Set(di, grid.margin), outside = hn::Set(di, -1);

@@ -20,15 +20,15 @@ struct CellBox {
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-// Cells of a picture, and the layout of arrays over them.
+// Cells of an image, and the layout of arrays over them.
 struct CellGrid {
-  float picture_width = 0;  // pixels
+  float image_width = 0;  // pixels
   float cells_per_pixel = 1, cells_per_row = 1;
   int32_t last_x = 0;
   int32_t stride = 0, margin = 0;  // as CoverageDifference::at()
 };
 
-// Of each end of a span: its cell, x = -1 for ends outside of the picture; its place; by how much it changes the
+// Of each end of a span: its cell, x = -1 for ends outside of the image; its place; by how much it changes the
 // coverage from its cell on, and how much more from the next.
 struct PlacedEnds {
   int32_t *x, *y, *at;

@@ -157,7 +157,7 @@ INSTANTIATE_TEST_SUITE_P(Bodies, CoverageDerivative,
                                          DerivativeCase{"TwoCameras", true, 0, 2}),
                          [](const auto& the_case) { return the_case.param.name; });
 
-// Against every triangle by itself, in double precision; also where the picture cuts the body off, and where little of
+// Against every triangle by itself, in double precision; also where the image cuts the body off, and where little of
 // it is trusted.
 TEST_P(CoverageDerivative, AgreesWithThePlainReference) {
   const auto body = GetParam().is_human ? human_for_test(4000) : small_body();

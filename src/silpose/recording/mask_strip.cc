@@ -15,7 +15,7 @@ constexpr double kRoom = 1.3;   // side of the cut-out over the larger side of t
 constexpr int kLeastSide = 64;  // pixels: less shows nothing of the surroundings
 constexpr int kQuality = 80;
 
-// A square around the mask as far as the picture goes; the whole picture where there is no mask.
+// A square around the mask as far as the image goes; the whole image where there is no mask.
 cv::Rect cut_out(const Mask& mask) {
   const Box box = mask.bounding_box();
   if (box.empty()) return {0, 0, mask.width(), mask.height()};
@@ -34,12 +34,12 @@ ByteImage resized(const ByteImage& image, const cv::Rect& part, cv::Size size) {
   return result;
 }
 
-MaskExample example_of(const ByteImage& picture, const Mask& mask) {
+MaskExample example_of(const ByteImage& image, const Mask& mask) {
   const cv::Rect part = cut_out(mask);
   const double scale = static_cast<double>(MaskStrip::kLongestSide) / std::max(part.width, part.height);
   const cv::Size size(std::max(1, static_cast<int>(std::lround(part.width * scale))),
                       std::max(1, static_cast<int>(std::lround(part.height * scale))));
-  ByteImage small = resized(picture, part, size);
+  ByteImage small = resized(image, part, size);
   draw_outline(small, mask_from_image(resized(image_from_mask(mask), part, size)));
   return {
       .width = size.width, .height = size.height, .is_empty = mask.count() == 0, .jpeg = jpeg_bytes(small, kQuality)};
@@ -47,12 +47,11 @@ MaskExample example_of(const ByteImage& picture, const Mask& mask) {
 
 }  // namespace
 
-void MaskStrip::add(int64_t frame_idx, double time_s, const ByteImage& picture, const Mask& mask) {
-  check(picture.width() == mask.width() && picture.height() == mask.height() && !picture.empty(),
-        "MaskStrip: mask of {}x{} on a picture of {}x{}", mask.width(), mask.height(), picture.width(),
-        picture.height());
+void MaskStrip::add(int64_t frame_idx, double time_s, const ByteImage& image, const Mask& mask) {
+  check(image.width() == mask.width() && image.height() == mask.height() && !image.empty(),
+        "MaskStrip: mask of {}x{} on an image of {}x{}", mask.width(), mask.height(), image.width(), image.height());
   if (num_seen_++ % stride_ != 0) return;
-  MaskExample example = example_of(picture, mask);
+  MaskExample example = example_of(image, mask);
   example.frame_idx = frame_idx;
   example.time_s = time_s;
   kept_.push_back(std::move(example));

@@ -1,5 +1,5 @@
-// MaskStrip: a few small pictures of a clip with the mask's outline on them, evenly over the clip however long it is.
-// Pictures are cropped around the mask, to show whether its edge, hands and feet are right.
+// MaskStrip: a few small images of a clip with the mask's outline on them, evenly over the clip however long it is.
+// Images are cropped around the mask, to show whether its edge, hands and feet are right.
 // Threads: one thread per strip.
 #pragma once
 
@@ -17,7 +17,7 @@ struct MaskExample {
   int64_t frame_idx = 0;
   double time_s = 0;
   int width = 0, height = 0;  // pixels
-  bool is_empty = false;      // nothing was found; the picture is whole
+  bool is_empty = false;      // nothing was found; the image is whole
   std::string jpeg;           // the bytes of the file
 
   static auto members(auto& e) { return std::tie(e.frame_idx, e.time_s, e.width, e.height, e.is_empty, e.jpeg); }
@@ -28,16 +28,16 @@ class MaskStrip {
   static constexpr size_t kMost = 8;        // examples
   static constexpr int kLongestSide = 240;  // pixels of an example
 
-  // The next picture of the clip, B, G, R, and its mask. REQUIRES: equal sizes.
-  void add(int64_t frame_idx, double time_s, const ByteImage& picture, const Mask& mask);
+  // The next image of the clip, B, G, R, and its mask. REQUIRES: equal sizes.
+  void add(int64_t frame_idx, double time_s, const ByteImage& image, const Mask& mask);
 
-  // At most kMost, the first picture among them; all where there were no more.
+  // At most kMost, the first image among them; all where there were no more.
   [[nodiscard]] std::vector<MaskExample> examples() const;
 
   static auto members(auto& s) { return std::tie(s.kept_, s.num_seen_, s.stride_); }
 
  private:
-  std::vector<MaskExample> kept_;  // every stride_-th picture, less than 4 kMost of them
+  std::vector<MaskExample> kept_;  // every stride_-th image, less than 4 kMost of them
   int64_t num_seen_ = 0, stride_ = 1;
 };
 

@@ -13,9 +13,9 @@ namespace {
 ByteImage decoded(const MaskExample& example) {
   const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "silpose_mask_strip.jpg";
   std::ofstream(path, std::ios::binary) << example.jpeg;
-  ByteImage picture = read_colour_image(path).value();
+  ByteImage image = read_colour_image(path).value();
   std::filesystem::remove(path);
-  return picture;
+  return image;
 }
 
 Mask block(int width, int height, const Box& box) {
@@ -27,11 +27,11 @@ Mask block(int width, int height, const Box& box) {
 }
 
 TEST(MaskStrip, ExamplesLieEvenlyOverTheClip) {
-  const ByteImage picture(80, 80, 3, 90);
+  const ByteImage image(80, 80, 3, 90);
   const Mask mask = block(80, 80, {30, 30, 20, 20});
   for (const int count : {0, 1, 5, 8, 9, 15, 16, 17, 31, 32, 33, 100, 257, 1000}) {
     MaskStrip strip;
-    for (int i = 0; i < count; ++i) strip.add(100 + i, 0.1 * i, picture, mask);
+    for (int i = 0; i < count; ++i) strip.add(100 + i, 0.1 * i, image, mask);
     const std::vector<MaskExample> examples = strip.examples();
     ASSERT_EQ(examples.size(), std::min<size_t>(8, count)) << count;
     if (count == 0) continue;
@@ -55,11 +55,9 @@ TEST(MaskStrip, ShowsTheMaskNearAndOutlined) {
   EXPECT_FALSE(example.is_empty);
   EXPECT_EQ(example.width, 240);
   EXPECT_EQ(example.height, 240);
-  const ByteImage picture = decoded(example);
-  ASSERT_EQ(picture.width(), 240);
-  const auto green = [&](int x, int y) {
-    return picture.at(x, y, 1) - (picture.at(x, y, 0) + picture.at(x, y, 2)) / 2;
-  };
+  const ByteImage image = decoded(example);
+  ASSERT_EQ(image.width(), 240);
+  const auto green = [&](int x, int y) { return image.at(x, y, 1) - (image.at(x, y, 0) + image.at(x, y, 2)) / 2; };
   // The mask's left border is 40 of 130 pixels from the left.
   int strongest = 0;
   for (int x = 0; x < 120; ++x) strongest = green(x, 120) > green(strongest, 120) ? x : strongest;
@@ -69,7 +67,7 @@ TEST(MaskStrip, ShowsTheMaskNearAndOutlined) {
   EXPECT_LT(example.jpeg.size(), 20'000u);
 }
 
-TEST(MaskStrip, WithoutAMaskThePictureIsWhole) {
+TEST(MaskStrip, WithoutAMaskTheImageIsWhole) {
   MaskStrip strip;
   strip.add(0, 0, ByteImage(640, 320, 3, 90), Mask(640, 320));
   const MaskExample example = strip.examples().at(0);
@@ -78,7 +76,7 @@ TEST(MaskStrip, WithoutAMaskThePictureIsWhole) {
   EXPECT_EQ(example.height, 120);
 }
 
-TEST(MaskStrip, AMaskThatFillsThePicture) {
+TEST(MaskStrip, AMaskThatFillsTheImage) {
   MaskStrip strip;
   strip.add(0, 0, ByteImage(40, 90, 3, 90), block(40, 90, {0, 0, 40, 90}));
   EXPECT_EQ(strip.examples().at(0).height, 240);

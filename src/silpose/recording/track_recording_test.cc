@@ -44,7 +44,7 @@ TEST(TrackRecording, TablesLeaveOutFramesWithoutPose) {
   EXPECT_EQ(normalised_pose_table(recording, stick().skeleton).rows[0].values, (std::vector<double>{0.75, 0.75}));
 }
 
-TEST(TrackRecording, JointsAreJointsAndLandmarksInWorldAndPicture) {
+TEST(TrackRecording, JointsAreJointsAndLandmarksInWorldAndImage) {
   const TrackRecording recording{"stick", {step(0, {1, kPi / 2}, State::kTracked)}};
   const PinholeCamera camera = look_at_camera(100, 100, 100, {0, 1, 5}, {0, 1, 0});
   const JointTable joints = joint_table(recording, stick(), camera);

@@ -62,11 +62,11 @@ struct BatchRenderer::Impl {
     return window;
   }
 
-  // To the window of the part inside the picture, of samples where `finer`.
+  // To the window of the part inside the image, of samples where `finer`.
   std::optional<Window> project_cropped(int width, int height, bool finer, std::span<const double> pose,
                                         PoseScratch& scratch) const {
     if (!projector.project(pose, scratch.projected)) return std::nullopt;
-    const auto bounds = bounds_in_picture(scratch);
+    const auto bounds = bounds_in_image(scratch);
     if (!bounds) return std::nullopt;
     const Window cropped = window_of(*bounds, width, height);
     const Window window = finer ? sample_window(cropped) : cropped;
@@ -80,14 +80,14 @@ struct BatchRenderer::Impl {
                          projected.cut_faces());
   }
 
-  // Bounds of the part inside the picture. Only a body cut by the picture's border needs drawing for it.
-  std::optional<PixelBounds> bounds_in_picture(PoseScratch& scratch) const {
+  // Bounds of the part inside the image. Only a body cut by the image's border needs drawing for it.
+  std::optional<PixelBounds> bounds_in_image(PoseScratch& scratch) const {
     const PixelBounds& bounds = scratch.projected.bounds();
     const PinholeCamera& camera = projector.camera();
     if (bounds.x0 >= 0 && bounds.y0 >= 0 && bounds.x1 <= camera.width && bounds.y1 <= camera.height) return bounds;
-    const Window picture{.width = camera.width, .height = camera.height};
-    projector.round(picture, scratch.projected);
-    scan(picture, scratch);
+    const Window image{.width = camera.width, .height = camera.height};
+    projector.round(image, scratch.projected);
+    scan(image, scratch);
     return scratch.outline.bounds();
   }
 
@@ -158,8 +158,8 @@ void BatchRenderer::silhouettes_cropped(const BatchView& poses, int width, int h
 
 Mask BatchRenderer::silhouette(std::span<const double> pose) const {
   Mask mask;
-  const Window picture{.width = camera().width, .height = camera().height};
-  silhouettes({pose.data(), 1, pose.size(), pose.size()}, picture, {&mask, 1});
+  const Window image{.width = camera().width, .height = camera().height};
+  silhouettes({pose.data(), 1, pose.size(), pose.size()}, image, {&mask, 1});
   return mask;
 }
 

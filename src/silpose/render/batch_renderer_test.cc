@@ -93,7 +93,7 @@ TEST_F(BatchRendererTest, CroppedCountsAgreeWithCroppedMasks) {
   for (size_t n = 0; n < counts.size(); ++n) {
     const Mask image = render_silhouette(*body_, camera_, pose(n));
     const Box box = image.bounding_box();
-    if (std::min(box.width, box.height) < 10) continue;  // hardly anything is left inside the picture
+    if (std::min(box.width, box.height) < 10) continue;  // hardly anything is left inside the image
     const Mask mask = normalised_silhouette(image, 64, 64);
     // The box of the pixels is up to half a pixel off the box of the vertices: a border of that width may differ.
     const double border = 2 * (64 + 64) * 64.0 / std::min(box.width, box.height);
@@ -137,7 +137,7 @@ TEST_F(BatchRendererTest, UnseenAndBrokenPosesCountNothing) {
   std::vector<double> poses(3 * num_dofs_, 0.0);
   poses[2] = 20;  // root_tz: behind the camera
   poses[num_dofs_] = std::numeric_limits<double>::quiet_NaN();
-  poses[2 * num_dofs_] = 50;  // root_tx: outside the picture
+  poses[2 * num_dofs_] = 50;  // root_tx: outside the image
   const Mask observed(32, 32);
   std::vector<Counts> counts(3, {.model = 7, .both = 7});
   const BatchRenderer renderer(body_, camera_);

@@ -1,4 +1,4 @@
-// What the drawing functions share: an OpenCV view of a picture, line widths, colours, and points in OpenCV's fixed
+// What the drawing functions share: an OpenCV view of an image, line widths, colours, and points in OpenCV's fixed
 // point. For use inside module render. Threads: pure functions.
 #pragma once
 
@@ -16,15 +16,15 @@ namespace silpose {
 
 inline constexpr int kFractionBits = 4;  // of the coordinates that OpenCV draws with
 
-// REQUIRES: picture of 3 channels, which outlives the view.
-inline cv::Mat canvas_of(ByteImage& picture) {
-  check(picture.channels() == 3, "drawing on a picture of {} channels", picture.channels());
-  return {picture.height(), picture.width(), CV_8UC3, picture.pixels().data()};
+// REQUIRES: image of 3 channels, which outlives the view.
+inline cv::Mat canvas_of(ByteImage& image) {
+  check(image.channels() == 3, "drawing on an image of {} channels", image.channels());
+  return {image.height(), image.width(), CV_8UC3, image.pixels().data()};
 }
 
-// Lines and dots that keep their weight whatever the picture's size.
-inline int line_width(const ByteImage& picture) {
-  return std::max(1, static_cast<int>(std::lround(picture.height() / 360.0)));
+// Lines and dots that keep their weight whatever the image's size.
+inline int line_width(const ByteImage& image) {
+  return std::max(1, static_cast<int>(std::lround(image.height() / 360.0)));
 }
 
 inline cv::Point fixed_point(const Eigen::Vector2d& pixel) {

@@ -1,4 +1,4 @@
-// Colour of what is drawn on a picture. A value.
+// Colour of what is drawn on an image. A value.
 #pragma once
 
 #include <array>

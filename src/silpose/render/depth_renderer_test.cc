@@ -110,7 +110,7 @@ TEST_F(DepthRendererTest, UnseenAndBrokenPosesShowNothing) {
   std::vector<double> poses(3 * num_dofs_, 0.0);
   poses[2] = 20;  // behind the camera
   poses[num_dofs_] = std::numeric_limits<double>::quiet_NaN();
-  poses[2 * num_dofs_] = 50;  // outside the picture
+  poses[2 * num_dofs_] = 50;  // outside the image
   const Window window{.width = 160, .height = 120};
   const Image<float> observed = reference(look_at_camera(160, 120, 150, {0, 1, 3}, {0, 0.6, 0}), window, 0);
   const auto seen = std::ranges::count_if(observed.pixels(), [](float depth) { return depth != 0; });

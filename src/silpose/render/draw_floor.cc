@@ -12,7 +12,7 @@ namespace silpose {
 namespace {
 
 constexpr int kReach = 3;                  // metres of grid on each side
-constexpr double kStrength = 0.6;          // of what is drawn against the picture below it
+constexpr double kStrength = 0.6;          // of what is drawn against the image below it
 constexpr double kEdgeStrength = 0.25;     // the same of the grid's dark edges
 constexpr double kTouching = 0.02;         // metres
 constexpr Colour kGrid = {235, 235, 235};  // on kEdge, so that it shows on any floor
@@ -42,13 +42,13 @@ Eigen::Vector3d on_floor(const Eigen::Vector2d& xz) { return {xz.x(), 0, xz.y()}
 
 }  // namespace
 
-void draw_floor(ByteImage& picture, const PinholeCamera& camera, const Eigen::Vector2d& middle, const Mask& in_front) {
-  check(camera.width == picture.width() && camera.height == picture.height(),
-        "draw_floor: camera of {}x{}, picture {}x{}", camera.width, camera.height, picture.width(), picture.height());
-  ByteImage drawn = picture;
-  cv::Mat below = canvas_of(picture), canvas = canvas_of(drawn);
+void draw_floor(ByteImage& image, const PinholeCamera& camera, const Eigen::Vector2d& middle, const Mask& in_front) {
+  check(camera.width == image.width() && camera.height == image.height(), "draw_floor: camera of {}x{}, image {}x{}",
+        camera.width, camera.height, image.width(), image.height());
+  ByteImage drawn = image;
+  cv::Mat below = canvas_of(image), canvas = canvas_of(drawn);
   const SegmentProjector project(camera);
-  const int width = std::max(1, line_width(picture) / 2);
+  const int width = std::max(1, line_width(image) / 2);
   const double x = std::round(middle.x()), z = std::round(middle.y());
   const auto draw_grid = [&](Colour colour, int line, double strength) {
     const cv::Mat before = canvas.clone();
@@ -63,14 +63,14 @@ void draw_floor(ByteImage& picture, const PinholeCamera& camera, const Eigen::Ve
   for (int axis = 0; axis < 3; ++axis) {
     Colour colour = {40, 40, 40};
     colour[static_cast<size_t>(2 - axis)] = 255;  // B, G, R
-    draw_line(canvas, project(Eigen::Vector3d::Zero(), Eigen::Vector3d::Unit(axis)), colour, 2 * line_width(picture));
+    draw_line(canvas, project(Eigen::Vector3d::Zero(), Eigen::Vector3d::Unit(axis)), colour, 2 * line_width(image));
   }
   if (in_front.width() > 0) {
     const ByteImage covered = image_from_mask(in_front);
     below.copyTo(canvas,
                  cv::Mat(covered.height(), covered.width(), CV_8UC1, const_cast<uint8_t*>(covered.pixels().data())));
   }
-  picture = std::move(drawn);
+  image = std::move(drawn);
 }
 
 std::vector<Footprint> footprints(const BodyModel& body, std::span<const double> pose) {
@@ -98,11 +98,11 @@ std::vector<Footprint> footprints(const BodyModel& body, std::span<const double>
   return result;
 }
 
-void draw_footprints(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera,
+void draw_footprints(ByteImage& image, const BodyModel& body, const PinholeCamera& camera,
                      std::span<const double> pose) {
-  cv::Mat canvas = canvas_of(picture);
+  cv::Mat canvas = canvas_of(image);
   const SegmentProjector project(camera);
-  const int width = line_width(picture);
+  const int width = line_width(image);
   for (const Footprint& print : footprints(body, pose)) {
     const Colour colour = colour_of(side_of(body.profile, body.skeleton, print.joint_idx));
     const size_t corners = print.outline.size();

@@ -20,7 +20,7 @@ class DrawFloorTest : public testing::Test {
     for (int y = int(pixel.y()) - 1; y <= int(pixel.y()) + 1; ++y) {
       for (int x = int(pixel.x()) - 1; x <= int(pixel.x()) + 1; ++x) {
         for (int c = 0; c < 3; ++c) {
-          if (picture_.at(x, y, c) != kGrey) return true;
+          if (image_.at(x, y, c) != kGrey) return true;
         }
       }
     }
@@ -29,12 +29,12 @@ class DrawFloorTest : public testing::Test {
   [[nodiscard]] bool is_drawn(const Eigen::Vector3d& point) const { return is_drawn(*camera_.project(point)); }
 
   PinholeCamera camera_ = look_at_camera(640, 480, 500, {0.3, 1.5, 4}, {0, 0.3, 0});
-  ByteImage picture_{640, 480, 3, kGrey};
+  ByteImage image_{640, 480, 3, kGrey};
 };
 
 TEST_F(DrawFloorTest, LinesGoThroughWholeMetresAndNothingBetween) {
   camera_.distortion = {-0.2, 0.05, 0.001, -0.001, 0};
-  draw_floor(picture_, camera_, {0.2, -0.4}, {});
+  draw_floor(image_, camera_, {0.2, -0.4}, {});
   for (int x = -1; x <= 1; ++x) {
     for (int z = -2; z <= 0; ++z) {
       EXPECT_TRUE(is_drawn(Eigen::Vector3d(x, 0, z))) << x << ", " << z;
@@ -47,19 +47,19 @@ TEST_F(DrawFloorTest, LinesGoThroughWholeMetresAndNothingBetween) {
 }
 
 TEST_F(DrawFloorTest, AxesAreRedGreenAndBlue) {
-  draw_floor(picture_, camera_, {0, 0}, {});
+  draw_floor(image_, camera_, {0, 0}, {});
   const Eigen::Vector2d x = *camera_.project({0.5, 0, 0}), y = *camera_.project({0, 0.5, 0}),
                         z = *camera_.project({0, 0, 0.5});
-  EXPECT_GT(picture_.at(int(x.x()), int(x.y()), 2), 200);
-  EXPECT_GT(picture_.at(int(y.x()), int(y.y()), 1), 200);
-  EXPECT_GT(picture_.at(int(z.x()), int(z.y()), 0), 200);
+  EXPECT_GT(image_.at(int(x.x()), int(x.y()), 2), 200);
+  EXPECT_GT(image_.at(int(y.x()), int(y.y()), 1), 200);
+  EXPECT_GT(image_.at(int(z.x()), int(z.y()), 0), 200);
 }
 
 TEST_F(DrawFloorTest, ACameraAmidTheGridSeesNothingOfWhatIsBehindIt) {
-  // Looking up: the horizon is below the picture, and so is all of the floor. A line that wraps round would be seen.
+  // Looking up: the horizon is below the image, and so is all of the floor. A line that wraps round would be seen.
   camera_ = look_at_camera(640, 480, 500, {0.3, 1.5, 0.3}, {0, 2.5, -1});
-  draw_floor(picture_, camera_, {0, 0}, {});
-  EXPECT_EQ(picture_, ByteImage(640, 480, 3, kGrey));
+  draw_floor(image_, camera_, {0, 0}, {});
+  EXPECT_EQ(image_, ByteImage(640, 480, 3, kGrey));
 }
 
 TEST_F(DrawFloorTest, TheBodyHidesTheFloorBehindIt) {
@@ -67,9 +67,9 @@ TEST_F(DrawFloorTest, TheBodyHidesTheFloorBehindIt) {
   for (int y = 100; y < 300; ++y) {
     for (int x = 250; x < 350; ++x) body.set(x, y);
   }
-  draw_floor(picture_, camera_, {0, 0}, body);
+  draw_floor(image_, camera_, {0, 0}, body);
   for (int y = 100; y < 300; ++y) {
-    for (int x = 250; x < 350; ++x) ASSERT_EQ(picture_.at(x, y, 0), kGrey);
+    for (int x = 250; x < 350; ++x) ASSERT_EQ(image_.at(x, y, 0), kGrey);
   }
   EXPECT_TRUE(is_drawn(Eigen::Vector3d(1, 0, 0)));
 }
@@ -93,7 +93,7 @@ TEST_F(DrawFloorTest, AFootprintIsBelowItsFootAndAsLong) {
   }
   pose[static_cast<size_t>(*human.skeleton.find_dof("root_ty_m"))] += 0.3;
   EXPECT_NEAR(footprints(human, pose)[1].lowest.y(), standing[1].lowest.y() + 0.3, 1e-5);
-  draw_footprints(picture_, human, camera_, pose);
+  draw_footprints(image_, human, camera_, pose);
   EXPECT_TRUE(is_drawn(Eigen::Vector3d(standing[0].outline[0].x(), 0, standing[0].outline[0].y())));
 }
 
@@ -102,7 +102,7 @@ TEST_F(DrawFloorTest, ABodyWithoutFeetHasNoFootprints) {
   EXPECT_TRUE(footprints(body, standing_pose(body)).empty());
 }
 
-TEST_F(DrawFloorTest, AnotherPictureIsTheCallersMistake) {
+TEST_F(DrawFloorTest, AnotherImageIsTheCallersMistake) {
   ByteImage small(64, 48, 3);
   EXPECT_THROW(draw_floor(small, camera_, {0, 0}, {}), std::invalid_argument);
 }

@@ -7,20 +7,19 @@
 #include "silpose/render/canvas.h"
 
 namespace silpose {
-void draw_outline(ByteImage& picture, const Mask& mask, Colour colour) {
-  check(mask.width() == picture.width() && mask.height() == picture.height(),
-        "draw_outline: mask of {}x{} on a picture of {}x{}", mask.width(), mask.height(), picture.width(),
-        picture.height());
-  cv::Mat canvas = canvas_of(picture);
+void draw_outline(ByteImage& image, const Mask& mask, Colour colour) {
+  check(mask.width() == image.width() && mask.height() == image.height(),
+        "draw_outline: mask of {}x{} on an image of {}x{}", mask.width(), mask.height(), image.width(), image.height());
+  cv::Mat canvas = canvas_of(image);
   ByteImage bytes = image_from_mask(mask);
   const cv::Mat filled(mask.height(), mask.width(), CV_8UC1, bytes.pixels().data());
   std::vector<std::vector<cv::Point>> contours;
   cv::findContours(filled, contours, cv::RETR_CCOMP, cv::CHAIN_APPROX_NONE);
-  cv::polylines(canvas, contours, true, scalar_of(colour), line_width(picture), cv::LINE_AA);
+  cv::polylines(canvas, contours, true, scalar_of(colour), line_width(image), cv::LINE_AA);
 }
 
-void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {
-  cv::Mat canvas = canvas_of(picture);
+void draw_bones(ByteImage& image, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose) {
+  cv::Mat canvas = canvas_of(image);
   const std::vector<Eigen::Vector3d> positions = landmark_positions(body, pose);
   const auto joints = body.skeleton.joints();
   std::vector<Colour> colours;
@@ -31,8 +30,8 @@ void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& 
   const auto parent_of = [&](size_t landmark) {
     return landmark < joints.size() ? joints[landmark].parent_idx : body.end_points[landmark - joints.size()].joint_idx;
   };
-  const int width = line_width(picture);
-  // Dark first and wider, so that bones show on any picture.
+  const int width = line_width(image);
+  // Dark first and wider, so that bones show on any image.
   for (const bool is_edge : {true, false}) {
     for (size_t i = 0; i < positions.size(); ++i) {
       const int parent = parent_of(i);

@@ -1,5 +1,5 @@
-// Drawing on pictures what was found in them: the outline of a silhouette, and a body's bones. 8-bit B, G, R.
-// Anti-aliased; line widths follow the picture's height.
+// Drawing on images what was found in them: the outline of a silhouette, and a body's bones. 8-bit B, G, R.
+// Anti-aliased; line widths follow the image's height.
 // Threads: pure functions.
 #pragma once
 
@@ -13,11 +13,11 @@
 
 namespace silpose {
 
-// The borders of a mask, outer ones and holes. REQUIRES: picture of 3 channels, of the mask's size.
-void draw_outline(ByteImage& picture, const Mask& mask, Colour colour = {80, 255, 80});
+// The borders of a mask, outer ones and holes. REQUIRES: image of 3 channels, of the mask's size.
+void draw_outline(ByteImage& image, const Mask& mask, Colour colour = {80, 255, 80});
 
 // The bones of a posed body as lines between landmarks: left ones blue, right ones orange, the others white.
 // Bones with an end behind the camera are left out.
-void draw_bones(ByteImage& picture, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose);
+void draw_bones(ByteImage& image, const BodyModel& body, const PinholeCamera& camera, std::span<const double> pose);
 
 }  // namespace silpose

@@ -11,8 +11,8 @@
 namespace silpose {
 namespace {
 
-// Room around the picture, as parts of its view: a straight lens draws rightly wherever it is, a bent one near its
-// picture only.
+// Room around the image, as parts of its view: a straight lens draws rightly wherever it is, a bent one near its
+// image only.
 constexpr double kStraightMargin = 1, kBentMargin = 0.05;
 
 struct Corner {

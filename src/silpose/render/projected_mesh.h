@@ -1,5 +1,5 @@
-// ProjectedMesh: a mesh in a camera's picture. Faces that cross the near plane are cut: first there, then to the
-// picture and some room around it, since what is cut off near the camera projects far off, where coordinates leave the
+// ProjectedMesh: a mesh in a camera's image. Faces that cross the near plane are cut: first there, then to the
+// image and some room around it, since what is cut off near the camera projects far off, where coordinates leave the
 // grid and a distortion polynomial folds back. Faces that lie wholly beyond the near plane are kept as they are.
 // Source: polygon clipping (references.bib: sutherland1974).
 // Threads: a value and a pure function.

@@ -101,8 +101,8 @@ TEST(ProjectedMesh, RandomTrianglesAreCutWhereRaysSayThatTheyEnd) {
   EXPECT_LE(wrong, pixels / 2000);  // centres on an edge, to the grid's 1/256 pixel
 }
 
-TEST(ProjectedMesh, ThroughABentLensWhatIsCutKeepsToThePicture) {
-  // Far outside the picture this lens folds back: corners there would land in it.
+TEST(ProjectedMesh, ThroughABentLensWhatIsCutKeepsToTheImage) {
+  // Far outside the image this lens folds back: corners there would land in it.
   PinholeCamera camera = camera_at_origin();
   camera.distortion = {-0.2, 0.02, 0.002, -0.001, 0};
   Rng rng(2);
@@ -122,7 +122,7 @@ TEST(ProjectedMesh, ThroughABentLensWhatIsCutKeepsToThePicture) {
 }
 
 TEST(ProjectedMesh, FacesThatShareAnEdgeLeaveNoGap) {
-  // A fan around a vertex behind the camera, seen all over the picture: rounding must not open it anywhere.
+  // A fan around a vertex behind the camera, seen all over the image: rounding must not open it anywhere.
   const PinholeCamera camera = camera_at_origin();
   Rng rng(3);
   for (int i = 0; i < 100; ++i) {
@@ -238,11 +238,11 @@ TEST(ProjectedMesh, DepthOfACutFloorIsExact) {
       EXPECT_NEAR(depth.at(x, y), -0.5 / ray.y(), 0.01) << x << ", " << y;
     }
   }
-  ByteImage picture(64, 48, 3, 255);
+  ByteImage image(64, 48, 3, 255);
   draw_shaded(camera, floor, std::vector<Face>{{0, 1, 2}, {0, 2, 3}}, Vertices(4, {0.2f, 0.4f, 0.8f}),
-              {.to_light = {0, -1, 0}, .ambient = 0}, picture);
-  EXPECT_EQ(picture.at(32, 45, 0), 51);
-  EXPECT_EQ(picture.at(32, 45, 2), 204);
+              {.to_light = {0, -1, 0}, .ambient = 0}, image);
+  EXPECT_EQ(image.at(32, 45, 0), 51);
+  EXPECT_EQ(image.at(32, 45, 2), 204);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 namespace silpose {
 namespace {
 
-constexpr double kMargin = 0.05;  // of the picture's view, on each side: room for the width of lines
+constexpr double kMargin = 0.05;  // of the image's view, on each side: room for the width of lines
 constexpr int kPieces = 48;       // of a distorted segment
 
 }  // namespace
@@ -23,7 +23,7 @@ std::vector<Eigen::Vector2d> SegmentProjector::operator()(const Eigen::Vector3d&
     if (at_b < 0) end = std::min(end, at_a / (at_a - at_b));
   }
   if (begin >= end) return {};
-  // A line stays a line up to the lens: points on it are taken there, where they lie evenly in the picture.
+  // A line stays a line up to the lens: points on it are taken there, where they lie evenly in the image.
   const Eigen::Vector2d first = (a + begin * (b - a)).hnormalized(), last = (a + end * (b - a)).hnormalized();
   const int pieces = camera_.has_distortion() ? kPieces : 1;
   std::vector<Eigen::Vector2d> pixels;

@@ -1,5 +1,5 @@
-// SegmentProjector: straight segments of the world as curves in a camera's picture, the lens' distortion respected.
-// Clipped before they are projected: to what lies in front of the camera, and to a little more than the picture shows.
+// SegmentProjector: straight segments of the world as curves in a camera's image, the lens' distortion respected.
+// Clipped before they are projected: to what lies in front of the camera, and to a little more than the image shows.
 // Source: clipping against half-spaces, Liang and Barsky (references.bib: liang1984).
 // Threads: immutable; const functions are safe.
 #pragma once

@@ -41,7 +41,7 @@ TEST(SegmentProjectorTest, WhatIsBehindTheCameraIsCutOff) {
   const PinholeCamera camera = camera_over_floor();
   const SegmentProjector projector(camera);
   EXPECT_TRUE(projector({-1, 0, 6}, {1, 0, 6}).empty());
-  // From before the camera to far behind it: what is left goes down, out of the picture's lower border.
+  // From before the camera to far behind it: what is left goes down, out of the image's lower border.
   const auto line = projector({0.2, 0, 0}, {0.2, 0, 20});
   ASSERT_EQ(line.size(), 2);
   EXPECT_LT((line[0] - *camera.project({0.2, 0, 0})).norm(), 1e-9);
@@ -50,10 +50,10 @@ TEST(SegmentProjectorTest, WhatIsBehindTheCameraIsCutOff) {
   EXPECT_LT(distance_to(line, *camera.project({0.2, 0, 1.5})), 1e-6);
 }
 
-TEST(SegmentProjectorTest, WhatIsBesideThePictureIsCutOffAlsoWhereTheLensWouldFoldItBack) {
+TEST(SegmentProjectorTest, WhatIsBesideTheImageIsCutOffAlsoWhereTheLensWouldFoldItBack) {
   PinholeCamera camera = camera_over_floor();
   camera.distortion = {-0.15, 0, 0, 0, 0};
-  // The polynomial brings this point back into the picture, where nothing of it is.
+  // The polynomial brings this point back into the image, where nothing of it is.
   const Eigen::Vector3d far(9, 0, 0.2);
   const Eigen::Vector2d folded = *camera.project(far);
   ASSERT_LT(std::abs(folded.x() - 320), 320);

@@ -52,7 +52,7 @@ struct SampledMesh {
   std::vector<double> inverse_depth;
 };
 
-Window sampled_picture(const PinholeCamera& camera) {
+Window sampled_image(const PinholeCamera& camera) {
   return {
       .scale_x = kSamples, .scale_y = kSamples, .width = kSamples * camera.width, .height = kSamples * camera.height};
 }
@@ -78,18 +78,18 @@ void blend(std::span<uint8_t> pixel, const Eigen::Vector3f& colour, float opacit
 }
 
 void draw_shadow(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices, std::span<const Face> faces,
-                 const Lighting& lighting, ByteImage& picture) {
+                 const Lighting& lighting, ByteImage& image) {
   const Eigen::Vector3f slope = (lighting.to_light / lighting.to_light.y()).cast<float>();
   std::vector<Eigen::Vector3f> on_floor;
   on_floor.reserve(vertices.size());
   for (const Eigen::Vector3f& vertex : vertices) on_floor.emplace_back(vertex - slope * vertex.y());
-  const Window window = sampled_picture(camera);
+  const Window window = sampled_image(camera);
   const SampledMesh mesh(camera, on_floor, faces, window);
   Mask mask;
   draw_silhouette_reference(mesh.projected.pixels, mesh.faces, window, mask);
-  for (int y = 0; y < picture.height(); ++y) {
-    const auto row = picture.row(y);
-    for (int x = 0; x < picture.width(); ++x) {
+  for (int y = 0; y < image.height(); ++y) {
+    const auto row = image.row(y);
+    for (int x = 0; x < image.width(); ++x) {
       int covered = 0;
       for (int k = 0; k < kSamples * kSamples; ++k) {
         covered += mask.get(kSamples * x + k % kSamples, kSamples * y + k / kSamples);
@@ -133,13 +133,12 @@ std::vector<Eigen::Vector3f> vertex_shades(const SampledMesh& mesh, std::span<co
   return shades;
 }
 
-// Blends rows [y_begin, y_end) of samples into the picture: each pixel by the share of its samples that are covered,
+// Blends rows [y_begin, y_end) of samples into the image: each pixel by the share of its samples that are covered,
 // which are those of a nearness above 0.
-void blend_samples(const Image<float>& nearness, const Image<float>& shade, int y_begin, int y_end,
-                   ByteImage& picture) {
+void blend_samples(const Image<float>& nearness, const Image<float>& shade, int y_begin, int y_end, ByteImage& image) {
   for (int y = y_begin; y < y_end; ++y) {
-    const auto row = picture.row(y);
-    for (int x = 0; x < picture.width(); ++x) {
+    const auto row = image.row(y);
+    for (int x = 0; x < image.width(); ++x) {
       Eigen::Vector3f sum = Eigen::Vector3f::Zero();
       int covered = 0;
       for (int k = 0; k < kSamples * kSamples; ++k) {
@@ -178,17 +177,17 @@ Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vect
 
 void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
                  std::span<const Face> faces, std::span<const Eigen::Vector3f> colours, const Lighting& lighting,
-                 ByteImage& picture) {
-  check(picture.width() == camera.width && picture.height() == camera.height && picture.channels() == 3,
-        "draw_shaded: picture of {}x{}x{} for a camera of {}x{}", picture.width(), picture.height(), picture.channels(),
+                 ByteImage& image) {
+  check(image.width() == camera.width && image.height() == camera.height && image.channels() == 3,
+        "draw_shaded: image of {}x{}x{} for a camera of {}x{}", image.width(), image.height(), image.channels(),
         camera.width, camera.height);
   check(colours.size() == vertices_in_world.size(), "draw_shaded: {} colours for {} vertices", colours.size(),
         vertices_in_world.size());
   if (lighting.shadow > 0 && lighting.to_light.y() > 0) {
-    draw_shadow(camera, vertices_in_world, faces, lighting, picture);
+    draw_shadow(camera, vertices_in_world, faces, lighting, image);
   }
 
-  const SampledMesh mesh(camera, vertices_in_world, faces, sampled_picture(camera));
+  const SampledMesh mesh(camera, vertices_in_world, faces, sampled_image(camera));
   const auto bounds = pixel_bounds(mesh.projected.pixels);
   if (!bounds) return;
   const std::vector<Eigen::Vector3f> shades = vertex_shades(mesh, vertices_in_world, faces, colours, lighting);
@@ -206,8 +205,8 @@ void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> v
   }
 
   const int y_begin = std::max(0, static_cast<int>(std::min(bounds->y0, 1e6)) - 1);
-  const int y_end = static_cast<int>(std::clamp(bounds->y1 + 2, 0.0, static_cast<double>(picture.height())));
-  blend_samples(nearness, shade, y_begin, y_end, picture);
+  const int y_end = static_cast<int>(std::clamp(bounds->y1 + 2, 0.0, static_cast<double>(image.height())));
+  blend_samples(nearness, shade, y_begin, y_end, image);
 }
 
 std::vector<Eigen::Vector3f> clothing_colours(const BodyModel& body) {

@@ -1,4 +1,4 @@
-// Depth images and shaded pictures of a mesh; for viewing and for synthetic video, never for tracking. Depth-buffered
+// Depth images and shaded images of a mesh; for viewing and for synthetic video, never for tracking. Depth-buffered
 // triangles, exactly those that silhouette.h draws; smooth Lambert shading by vertex; a shadow on the floor y = 0;
 // edges smoothed by 2x2 samples per pixel.
 // Threads: pure functions.
@@ -20,7 +20,7 @@ namespace silpose {
 // the silhouette.
 [[nodiscard]] Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
                                       std::span<const Face> faces);
-// The same in a window of the picture.
+// The same in a window of the image.
 [[nodiscard]] Image<float> draw_depth(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
                                       std::span<const Face> faces, const Window& window);
 
@@ -30,11 +30,11 @@ struct Lighting {
   double shadow = 0;                           // how much of its brightness the floor loses in the shadow, 0 to 1
 };
 
-// Draws a mesh over what `picture` (3 channels, the camera's size) shows already. `colours` [V] are B, G, R in 0 to 1.
-// The shadow falls on the floor and is seen wherever the floor would be: the picture has no other surfaces.
+// Draws a mesh over what `image` (3 channels, the camera's size) shows already. `colours` [V] are B, G, R in 0 to 1.
+// The shadow falls on the floor and is seen wherever the floor would be: the image has no other surfaces.
 void draw_shaded(const PinholeCamera& camera, std::span<const Eigen::Vector3f> vertices_in_world,
                  std::span<const Face> faces, std::span<const Eigen::Vector3f> colours, const Lighting& lighting,
-                 ByteImage& picture);
+                 ByteImage& image);
 
 // Skin, hair, shirt, trousers and shoes by joint, [V] for draw_shaded(); one colour for bodies that are not human.
 [[nodiscard]] std::vector<Eigen::Vector3f> clothing_colours(const BodyModel& body);

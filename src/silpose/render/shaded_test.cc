@@ -20,8 +20,8 @@ class ShadedTest : public testing::Test {
   Mask mask_ = render_silhouette(body_, camera_, pose_);
   std::vector<Eigen::Vector3f> grey_ = std::vector(vertices_.size(), Eigen::Vector3f(0.5f, 0.5f, 0.5f));
 
-  static double brightness(const ByteImage& picture, int x, int y) {
-    return (picture.at(x, y, 0) + picture.at(x, y, 1) + picture.at(x, y, 2)) / 3.0;
+  static double brightness(const ByteImage& image, int x, int y) {
+    return (image.at(x, y, 0) + image.at(x, y, 1) + image.at(x, y, 2)) / 3.0;
   }
 };
 
@@ -62,28 +62,28 @@ TEST_F(ShadedTest, NearerSurfacesHideFartherOnes) {
     EXPECT_NEAR(draw_depth(level, two, faces).at(32, 32), 3, 1e-4);
     std::vector<Eigen::Vector3f> colours(6, {1, 0, 0});
     std::fill(colours.begin() + 3, colours.end(), Eigen::Vector3f(0, 0, 1));
-    ByteImage picture(64, 64, 3);
-    draw_shaded(level, two, faces, colours, {.to_light = {0, 0, 1}, .ambient = 0}, picture);
-    EXPECT_EQ(picture.at(32, 32, 0), 255);
-    EXPECT_EQ(picture.at(32, 32, 2), 0);
+    ByteImage image(64, 64, 3);
+    draw_shaded(level, two, faces, colours, {.to_light = {0, 0, 1}, .ambient = 0}, image);
+    EXPECT_EQ(image.at(32, 32, 0), 255);
+    EXPECT_EQ(image.at(32, 32, 2), 0);
   }
 }
 
 TEST_F(ShadedTest, LeavesTheBackgroundAndSmoothsEdges) {
-  ByteImage picture(160, 120, 3, 200);
-  draw_shaded(camera_, vertices_, body_.rest.faces, grey_, {.ambient = 0.2}, picture);
+  ByteImage image(160, 120, 3, 200);
+  draw_shaded(camera_, vertices_, body_.rest.faces, grey_, {.ambient = 0.2}, image);
   int smooth = 0;
   for (int y = 1; y < 119; ++y) {
     for (int x = 1; x < 159; ++x) {
       int inside = 0;
       for (int k = 0; k < 9; ++k) inside += mask_.get(x + k % 3 - 1, y + k / 3 - 1);
       if (inside == 0) {
-        EXPECT_EQ(brightness(picture, x, y), 200);
+        EXPECT_EQ(brightness(image, x, y), 200);
       }
       if (inside == 9) {
-        EXPECT_LE(brightness(picture, x, y), 128);
+        EXPECT_LE(brightness(image, x, y), 128);
       }
-      smooth += brightness(picture, x, y) > 130 && brightness(picture, x, y) < 199;
+      smooth += brightness(image, x, y) > 130 && brightness(image, x, y) < 199;
     }
   }
   EXPECT_GT(smooth, 30);

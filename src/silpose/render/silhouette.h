@@ -100,7 +100,7 @@ class BatchRenderer {
   // The same of coverages, as OutlineRenderer::count_coverage().
   void coverages(const BatchView& poses, const Window& window, const ByteImage& observed,
                  std::span<OutlineRenderer::Counts> out) const;
-  // Each silhouette cropped to the bounding box of its part inside the picture and scaled to the observed mask's size
+  // Each silhouette cropped to the bounding box of its part inside the image and scaled to the observed mask's size
   // (see shape/normalised_silhouette.h), then compared. An unseen body counts {0, 0}.
   void counts_cropped(const BatchView& poses, const Mask& observed_cropped,
                       std::span<OutlineRenderer::Counts> out) const;

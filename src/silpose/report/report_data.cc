@@ -112,16 +112,16 @@ Json skeleton_of(const TrackRecording& recording, const BodyModel& body) {
 Json strips_of(const ReportInput& input) {
   Json strips = Json::array();
   for (const auto& [camera, examples] : input.strips) {
-    Json pictures = Json::array();
+    Json images = Json::array();
     for (const MaskExample& example : examples) {
-      pictures.push_back({{"frame", example.frame_idx},
-                          {"time", rounded(example.time_s)},
-                          {"width", example.width},
-                          {"height", example.height},
-                          {"empty", example.is_empty},
-                          {"picture", "data:image/jpeg;base64," + base64(example.jpeg)}});
+      images.push_back({{"frame", example.frame_idx},
+                        {"time", rounded(example.time_s)},
+                        {"width", example.width},
+                        {"height", example.height},
+                        {"empty", example.is_empty},
+                        {"image", "data:image/jpeg;base64," + base64(example.jpeg)}});
     }
-    strips.push_back({{"camera", camera}, {"examples", std::move(pictures)}});
+    strips.push_back({{"camera", camera}, {"examples", std::move(images)}});
   }
   return strips;
 }

@@ -121,12 +121,12 @@ TEST_F(ReportData, WhatIsNotANumberIsAGap) {
   EXPECT_EQ(parsed["stages"][0], (json{"decode", nullptr}));
 }
 
-TEST_F(ReportData, ExamplesOfMasksArePicturesInside) {
+TEST_F(ReportData, ExamplesOfMasksAreImagesInside) {
   ReportInput input{.recording = &recording, .body = &body, .overlay_video = {}};
   input.strips = {{"front", {{.frame_idx = 61, .time_s = 2.5, .width = 240, .height = 120, .jpeg = "Man"}}}};
   const json strip = json::parse(report_json(input))["strips"][0];
   EXPECT_EQ(strip["camera"], "front");
-  EXPECT_EQ(strip["examples"][0]["picture"], "data:image/jpeg;base64,TWFu");
+  EXPECT_EQ(strip["examples"][0]["image"], "data:image/jpeg;base64,TWFu");
   EXPECT_EQ(strip["examples"][0]["time"], 2.5);
 }
 

@@ -23,10 +23,10 @@ struct ReportInput {
   const TrackRecording* recording = nullptr;
   const BodyModel* body = nullptr;
   std::optional<Eigen::Vector3d> viewpoint;  // of the first camera, world: the skeleton is first shown from there
-  std::filesystem::path overlay_video;  // one picture per step, from time 0; embedded if small, else linked by name
-  double fps = 30;                      // of the clip, where it is constant
-  FactLines facts;                      // the run
-  FactLines mask_facts;                 // how the masks were made: the segmenter and its settings
+  std::filesystem::path overlay_video;       // one image per step, from time 0; embedded if small, else linked by name
+  double fps = 30;                           // of the clip, where it is constant
+  FactLines facts;                           // the run
+  FactLines mask_facts;                      // how the masks were made: the segmenter and its settings
   std::vector<std::pair<std::string, std::vector<MaskExample>>> strips;  // by camera: name, examples
   std::vector<std::pair<std::string, std::string>> downloads;            // files next to the page: name, what it holds
   std::vector<std::pair<std::string, double>> stages_s;                  // seconds by stage, in order

@@ -9,7 +9,7 @@
 
 namespace silpose {
 
-// Signs that a subject who does not move has become background, as fractions of the picture or of the region.
+// Signs that a subject who does not move has become background, as fractions of the image or of the region.
 struct BackgroundDoubt {
   double half_covered = 0;  // a quarter of the samples or more differ from the background there
   double ever_covered = 0;  // any sample does

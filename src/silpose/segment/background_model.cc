@@ -23,7 +23,7 @@ constexpr float kMadToDeviation = 1.4826f;  // [definition] of a normal distribu
 // [definition] for a normal distribution, the margin in grey levels a [guess].
 constexpr float kLowerThirdToDeviation = 2.32f, kLowerThirdMargin = 1.0f;
 
-// [guess] How many pictures are kept: enough for a median, bounded in memory.
+// [guess] How many images are kept: enough for a median, bounded in memory.
 constexpr int64_t kMaxSamples = 75, kMinSamples = 25;
 constexpr int64_t kSampleBytes = int64_t{256} << 20;
 
@@ -106,7 +106,7 @@ void steady_noise(Image<float>& noise, const std::array<float, 3>& floor) {
 }
 
 ByteImage convert(const ByteImage& image, int conversion) {
-  check(image.channels() == 3, "background: a picture of {} channels", image.channels());
+  check(image.channels() == 3, "background: an image of {} channels", image.channels());
   ByteImage converted(image.width(), image.height(), 3);
   cv::Mat to(image.height(), image.width(), CV_8UC3, converted.pixels().data());
   cv::cvtColor(cv::Mat(image.height(), image.width(), CV_8UC3, const_cast<uint8_t*>(image.pixels().data())), to,
@@ -114,7 +114,7 @@ ByteImage convert(const ByteImage& image, int conversion) {
   return converted;
 }
 
-// `share` of what the picture changes from pixel to pixel: that much of a shift is treated as noise.
+// `share` of what the image changes from pixel to pixel: that much of a shift is treated as noise.
 cv::Mat slope_of(const ByteImage& image, double share) {
   const cv::Mat view(image.height(), image.width(), CV_8UC3, const_cast<uint8_t*>(image.pixels().data()));
   cv::Mat slope_x, slope_y;
@@ -143,7 +143,7 @@ Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t>
     Result<std::optional<Frame>> frame = video.next();
     if (!frame) return frame.failure();
     if (!frame->has_value()) break;
-    if (!first_ns) first_ns = (*frame)->time_ns;  // not 0 where pictures are numbered
+    if (!first_ns) first_ns = (*frame)->time_ns;  // not 0 where images are numbered
     if (end_ns && (*frame)->time_ns - *first_ns >= *end_ns) {
       samples.next_index = (*frame)->index;
       break;
@@ -183,7 +183,7 @@ BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSa
     median_and_deviation(samples.images, ignored, model.noise);
   }
   // Where the subject comes and goes the deviation is not noise: it is limited to a few floors. A plate is its own
-  // exposure and may lie a fraction of a pixel off, hence the slope of the picture.
+  // exposure and may lie a fraction of a pixel off, hence the slope of the image.
   cv::Mat noise(plate.height(), plate.width(), CV_32FC3, model.noise.pixels().data());
   const cv::Mat slope = slope_of(model.median, kPlateNoiseOfSlope);
   noise = cv::min(noise, 3 * cv::Scalar(kPlateFloor[0], kPlateFloor[1], kPlateFloor[2])) + slope;

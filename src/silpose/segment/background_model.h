@@ -25,7 +25,7 @@ struct BackgroundModel {
   [[nodiscard]] int height() const { return median.height(); }
 };
 
-// Pictures spread evenly over a stretch of video, few enough to be kept in memory, as Y, Cr, Cb.
+// Images spread evenly over a stretch of video, few enough to be kept in memory, as Y, Cr, Cb.
 struct BackgroundSamples {
   std::vector<ByteImage> images;      // each [H, W, 3]
   std::optional<int64_t> next_index;  // of the first frame not before end_ns, where there is one
@@ -39,7 +39,7 @@ Result<BackgroundSamples> sample_background(Video& video, std::optional<int64_t>
 // From samples in which every pixel shows the background more than half of the time. REQUIRES: at least one sample.
 BackgroundModel learn_background(const BackgroundSamples& samples);
 
-// From a picture [H, W, 3] (B, G, R) of the empty scene; the pixels' noise comes from samples of the clip, which may
+// From an image [H, W, 3] (B, G, R) of the empty scene; the pixels' noise comes from samples of the clip, which may
 // show people (none: a default). REQUIRES: equal sizes.
 BackgroundModel background_from_plate(const ByteImage& plate, const BackgroundSamples& samples = {});
 

@@ -14,14 +14,14 @@ namespace {
 BackgroundSamples walk(const TestScene& scene, int count = 41) {
   BackgroundSamples samples;
   for (int i = 0; i < count; ++i) {
-    samples.images.push_back(to_luma_chroma(scene.picture(-30 + 5 * i, static_cast<uint64_t>(i))));
+    samples.images.push_back(to_luma_chroma(scene.image(-30 + 5 * i, static_cast<uint64_t>(i))));
   }
   return samples;
 }
 
 TEST(LearnBackground, MedianAndScaleOfAHandWorkedPixel) {
   BackgroundSamples samples;
-  for (const int level : {100, 104, 96, 112, 100, 92, 250}) {  // luma; grey pictures have luma as their level
+  for (const int level : {100, 104, 96, 112, 100, 92, 250}) {  // luma; grey images have luma as their level
     samples.images.push_back(to_luma_chroma(ByteImage(3, 3, 3, static_cast<uint8_t>(level))));
   }
   const BackgroundModel model = learn_background(samples);
@@ -50,7 +50,7 @@ TEST(LearnBackground, SubjectThatStaysForTwoFifthsDoesNotRaiseTheScale) {
   const TestScene scene;
   BackgroundSamples samples;
   for (int i = 0; i < 50; ++i) {
-    samples.images.push_back(to_luma_chroma(scene.picture(i < 20 ? 60 : -100, static_cast<uint64_t>(i))));
+    samples.images.push_back(to_luma_chroma(scene.image(i < 20 ? 60 : -100, static_cast<uint64_t>(i))));
   }
   const BackgroundModel model = learn_background(samples);
   EXPECT_LT(model.noise.at(70, 60, 1), 6);
@@ -81,10 +81,10 @@ TEST(ForegroundFinder, FindsTheSubject) {
   const TestScene scene;
   ForegroundFinder finder(learn_background(walk(scene)));
   for (int x : {0, 40, 100, 130}) {
-    const Mask found = finder.find(to_luma_chroma(scene.picture(x, 900)));
+    const Mask found = finder.find(to_luma_chroma(scene.image(x, 900)));
     EXPECT_GT(intersection_over_union(found, scene.subject(x)), 0.97) << x << "\n" << text_from_mask(found);
   }
-  EXPECT_LE(finder.find(to_luma_chroma(scene.picture(-100, 901))).count(), 5) << "an empty scene is all but empty";
+  EXPECT_LE(finder.find(to_luma_chroma(scene.image(-100, 901))).count(), 5) << "an empty scene is all but empty";
 }
 
 TEST(ForegroundFinder, ShadowsAreBackground) {
@@ -92,7 +92,7 @@ TEST(ForegroundFinder, ShadowsAreBackground) {
   ForegroundFinder finder(learn_background(walk(scene)));
   for (const double darker : {0.15, 0.3}) {
     scene.shadow = darker;
-    const Mask found = finder.find(to_luma_chroma(scene.picture(50, 7)));
+    const Mask found = finder.find(to_luma_chroma(scene.image(50, 7)));
     EXPECT_GT(intersection_over_union(found, scene.subject(50)), 0.93) << darker << "\n" << text_from_mask(found);
   }
 }
@@ -102,9 +102,9 @@ TEST(ForegroundFinder, ExposureThatChangesIsBackground) {
   ForegroundFinder finder(learn_background(walk(scene)));
   for (const double exposure : {0.85, 1.15}) {
     scene.exposure = exposure;
-    const ByteImage picture = to_luma_chroma(scene.picture(50, 7));
-    EXPECT_NEAR(exposure_gain(finder.model(), picture), exposure, 0.02);
-    EXPECT_GT(intersection_over_union(finder.find(picture), scene.subject(50)), 0.95);
+    const ByteImage image = to_luma_chroma(scene.image(50, 7));
+    EXPECT_NEAR(exposure_gain(finder.model(), image), exposure, 0.02);
+    EXPECT_GT(intersection_over_union(finder.find(image), scene.subject(50)), 0.95);
   }
 }
 
@@ -115,10 +115,10 @@ TEST(ForegroundFinder, RefusesAnotherSize) {
 
 TEST(BackgroundFromPlate, WorksWithAndWithoutTheClip) {
   const TestScene scene;
-  const BackgroundSamples staying{.images = {to_luma_chroma(scene.picture(60, 1)), to_luma_chroma(scene.picture(60, 2)),
-                                             to_luma_chroma(scene.picture(60, 3)), to_luma_chroma(scene.picture(60, 4)),
-                                             to_luma_chroma(scene.picture(60, 5))}};
-  const ByteImage plate = scene.picture(-100, 50);
+  const BackgroundSamples staying{.images = {to_luma_chroma(scene.image(60, 1)), to_luma_chroma(scene.image(60, 2)),
+                                             to_luma_chroma(scene.image(60, 3)), to_luma_chroma(scene.image(60, 4)),
+                                             to_luma_chroma(scene.image(60, 5))}};
+  const ByteImage plate = scene.image(-100, 50);
   for (const BackgroundModel& model : {background_from_plate(plate), background_from_plate(plate, staying)}) {
     const Mask found = ForegroundFinder(model).find(staying.images[2]);
     EXPECT_GT(intersection_over_union(found, scene.subject(60)), 0.95) << text_from_mask(found);

@@ -46,7 +46,7 @@ class BackgroundSegmenter : public BlobSegmenter {
   [[nodiscard]] std::string name() const override { return options_.name; }
 
  private:
-  // All foreground of a picture, not only the subject's.
+  // All foreground of an image, not only the subject's.
   struct Look {
     ByteImage luma_chroma;
     Mask found;
@@ -69,11 +69,11 @@ class BackgroundSegmenter : public BlobSegmenter {
     return look;
   }
 
-  static constexpr double kGap = 0.003;  // [guess] of the picture's height: fingers and knees stay apart
+  static constexpr double kGap = 0.003;  // [guess] of the image's height: fingers and knees stay apart
   BackgroundSegmenterOptions options_;
   ForegroundFinder finder_;
   CleanUpOptions blob_;
-  std::optional<std::pair<int64_t, Result<Look>>> prepared_;  // by the picture's number
+  std::optional<std::pair<int64_t, Result<Look>>> prepared_;  // by the image's number
 };
 
 class OnlineSegmenter : public BlobSegmenter {
@@ -116,8 +116,8 @@ class OnlineSegmenter : public BlobSegmenter {
   [[nodiscard]] std::string name() const override { return options_.name; }
 
  private:
-  static constexpr int kHistory = 500;    // [guess] pictures until the oldest is forgotten
-  static constexpr int kNumLearned = 10;  // [guess] pictures before anything is trusted
+  static constexpr int kHistory = 500;    // [guess] images until the oldest is forgotten
+  static constexpr int kNumLearned = 10;  // [guess] images before anything is trusted
   BackgroundSegmenterOptions options_;
   cv::Ptr<cv::BackgroundSubtractor> subtractor_;
   cv::Size size_;

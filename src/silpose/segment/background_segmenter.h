@@ -1,4 +1,4 @@
-// The segmenters that learn a background: from a model made beforehand, or picture by picture. Made by
+// The segmenters that learn a background: from a model made beforehand, or image by image. Made by
 // make_segmenter(). Threads: one thread per segmenter.
 #pragma once
 
@@ -34,7 +34,7 @@ std::unique_ptr<Segmenter> make_background_segmenter(BackgroundModel model, Back
 enum class OnlineMixture { kMog2, kKnn };
 
 // Mixtures of Gaussians or nearest neighbours per pixel that keep learning; shadows count as background. Has no model
-// in its first pictures: trust is 0 there.
+// in its first images: trust is 0 there.
 std::unique_ptr<Segmenter> make_online_segmenter(OnlineMixture mixture, BackgroundSegmenterOptions options);
 
 }  // namespace silpose

@@ -27,7 +27,7 @@ class BlobSegmenter : public Segmenter {
   void restore(std::string_view state) final { check(from_bytes(state, monitor_), "BlobSegmenter: not a state of it"); }
 
  protected:
-  // choose_blob() with what is expected of this picture, and of no later one.
+  // choose_blob() with what is expected of this image, and of no later one.
   Mask subject_of(const Mask& foreground, const CleanUpOptions& clean_up) {
     return choose_blob(foreground, clean_up, std::exchange(expected_, {}));
   }

@@ -24,10 +24,10 @@ constexpr float kDeeper = 0.1f;         // below the tenth part of its deepest f
 constexpr size_t kLeastCore = 30;       // pixels
 constexpr int kSpread = 7;              // pixels, from where it is certain to where it could be
 constexpr int kSolid = 5, kMargin = 8;  // pixels: what is less wide may be noise
-constexpr int kEnoughPixels = 360;      // of the picture's smaller side; larger ones are reduced for speed
+constexpr int kEnoughPixels = 360;      // of the image's smaller side; larger ones are reduced for speed
 constexpr int kLeastOfRow = 3;          // pixels that make a row the subject's
 
-// A picture compared with its background, within `part` of it.
+// An image compared with its background, within `part` of it.
 struct Comparison {
   cv::Mat factor;  // [h, w] of the luma, which noise and coding affect less over 3x3 pixels
   cv::Mat tint;    // [h, w]

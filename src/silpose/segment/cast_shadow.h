@@ -15,8 +15,8 @@ struct CastShadow {
   int floor_row = 0;     // from this row down it is at the height of the subject's feet
 };
 
-// Of a picture [H, W, 3] in Y, Cr, Cb that is brighter than the background by the factor `gain` (exposure_gain()).
-// `differs` [H, W] is not 0 where the picture differs from the unshadowed background. REQUIRES: equal sizes.
+// Of an image [H, W, 3] in Y, Cr, Cb that is brighter than the background by the factor `gain` (exposure_gain()).
+// `differs` [H, W] is not 0 where the image differs from the unshadowed background. REQUIRES: equal sizes.
 CastShadow find_cast_shadow(const BackgroundModel& model, const ByteImage& luma_chroma, float gain,
                             const ByteImage& differs);
 

@@ -9,7 +9,7 @@ namespace silpose {
 namespace {
 
 constexpr double kGap = 0.003;  // CleanUpOptions::join_gap: a key cuts few limbs [tuned on the rendered walk, side]
-// [guess] Parts of the picture and of the screen's hull from which, and below which, a warning is due.
+// [guess] Parts of the image and of the screen's hull from which, and below which, a warning is due.
 constexpr double kMuchOutside = 0.01, kLittleScreen = 0.6;
 
 class ChromaSegmenter : public BlobSegmenter {
@@ -28,7 +28,7 @@ class ChromaSegmenter : public BlobSegmenter {
     const double outside = 1 - static_cast<double>(model_.inside.count()) / pixels;
     if (outside > kMuchOutside) {
       warnings_.push_back(fmt::format(
-          "{}: {:.0f} % of the picture lies outside the screen and is left out (--garbage-mask says what to leave out)",
+          "{}: {:.0f} % of the image lies outside the screen and is left out (--garbage-mask says what to leave out)",
           input, 100 * outside));
     }
     clean_up_.garbage_mask = model_.inside;

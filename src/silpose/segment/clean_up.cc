@@ -10,7 +10,7 @@
 namespace silpose {
 namespace {
 
-constexpr double kMinBlob = 0.0005;    // [guess] of the picture
+constexpr double kMinBlob = 0.0005;    // [guess] of the image
 constexpr double kLeastCovered = 0.3;  // [guess] of an expected silhouette
 // What belongs to a blob though it is apart from it: gap, of the blob's height; sizes, of its area.
 // [tuned on rendered clips of recorded motions: dance, jumping, kick, punch]
@@ -38,7 +38,7 @@ cv::Mat within(const cv::Mat& mat, int radius) {
   return result <= radius;
 }
 
-// Grown and shrunk again: gaps of up to twice the radius are closed. The picture's border is no edge.
+// Grown and shrunk again: gaps of up to twice the radius are closed. The image's border is no edge.
 Mask close_gaps(const Mask& mask, int radius) {
   const Box box = mask.bounding_box();
   if (box.empty() || radius <= 0) return mask;
@@ -51,7 +51,7 @@ Mask close_gaps(const Mask& mask, int radius) {
   return mask_from_mat(mat);
 }
 
-// Where the subject is expected, with a margin, as far as it lies in `part` of the picture.
+// Where the subject is expected, with a margin, as far as it lies in `part` of the image.
 cv::Mat where_expected(const Mask& expected, const cv::Rect& part) {
   cv::Mat near = cv::Mat::zeros(part.size(), CV_8U);
   const Box box = expected.bounding_box();
@@ -98,7 +98,7 @@ Mask without_garbage(const Mask& foreground, const std::optional<Mask>& garbage_
   Mask cut = foreground;
   if (!garbage_mask) return cut;
   check(garbage_mask->width() == cut.width() && garbage_mask->height() == cut.height(),
-        "choose_blob: garbage mask {}x{}, picture {}x{}", garbage_mask->width(), garbage_mask->height(), cut.width(),
+        "choose_blob: garbage mask {}x{}, image {}x{}", garbage_mask->width(), garbage_mask->height(), cut.width(),
         cut.height());
   for (int y = 0; y < cut.height(); ++y) {
     const auto to = cut.row(y);
@@ -110,7 +110,7 @@ Mask without_garbage(const Mask& foreground, const std::optional<Mask>& garbage_
 
 // The blobs of a mask: label 0 is the background. Areas are in pixels of the mask itself.
 struct Blobs {
-  cv::Rect part;                                     // of the picture: all that is worked on
+  cv::Rect part;                                     // of the image: all that is worked on
   cv::Mat mat, labels;                               // of that part: the mask, and a label per pixel
   std::vector<int64_t> area, inside, expected_area;  // by label: whole, in the region, where the subject is expected
 };
@@ -168,7 +168,7 @@ ChosenBlobs choose_among(const Blobs& blobs, double min_area, int64_t expected_a
   return chosen;
 }
 
-// The pixels of the blobs that are kept, as a mask of their part of the picture.
+// The pixels of the blobs that are kept, as a mask of their part of the image.
 Mask mask_of(const Blobs& blobs, const std::vector<bool>& is_kept) {
   Mask mask(blobs.part.width, blobs.part.height);
   for (int y = 0; y < mask.height(); ++y) {
@@ -241,7 +241,7 @@ std::shared_ptr<const Mask> removed_by(const std::optional<Mask>& garbage_mask) 
 Mask choose_blob(const Mask& foreground, const CleanUpOptions& options, const Mask& expected) {
   options.check();
   check(expected.width() == 0 || (expected.width() == foreground.width() && expected.height() == foreground.height()),
-        "choose_blob: a silhouette of {}x{} is expected, picture {}x{}", expected.width(), expected.height(),
+        "choose_blob: a silhouette of {}x{} is expected, image {}x{}", expected.width(), expected.height(),
         foreground.width(), foreground.height());
   const Mask cut = without_garbage(foreground, options.garbage_mask);
   Mask blob(cut.width(), cut.height());

@@ -15,8 +15,8 @@ namespace silpose {
 struct CleanUpOptions {
   std::optional<Box> region;         // a blob counts only if at least half of its pixels lie inside
   std::optional<Mask> garbage_mask;  // what is not set is removed, first
-  int min_blob_px = -1;              // area below which a blob does not count; -1: 0.05 % of the picture
-  double join_gap = 0.008;           // of the picture's height: gaps that do not separate blobs, and are closed
+  int min_blob_px = -1;              // area below which a blob does not count; -1: 0.05 % of the image
+  double join_gap = 0.008;           // of the image's height: gaps that do not separate blobs, and are closed
   double max_hole = 0.005;           // of the blob's area: holes up to this are filled
   int grow_px = 0;                   // last: by that many pixels; negative shrinks
 
@@ -39,7 +39,7 @@ std::shared_ptr<const Mask> removed_by(const std::optional<Mask>& garbage_mask);
 // Fills holes (4-connected, not touching the border) of at most max_area pixels.
 Mask fill_holes(const Mask& mask, int64_t max_area);
 
-// Grown by a disc of radius_px; shrunk where negative (the picture's border does not shrink it).
+// Grown by a disc of radius_px; shrunk where negative (the image's border does not shrink it).
 Mask grow(const Mask& mask, int radius_px);
 
 }  // namespace silpose

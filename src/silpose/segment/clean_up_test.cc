@@ -105,7 +105,7 @@ TEST(ChooseBlob, SmallGapsAreClosedAndDoNotPartABlob) {
 
 TEST(ChooseBlob, ClosingKeepsAConvexBlobAsItIs) {
   Mask mask(200, 200);
-  for (int y = 0; y < 60; ++y) {  // at the border of the picture
+  for (int y = 0; y < 60; ++y) {  // at the border of the image
     for (int x = 150; x < 200; ++x) mask.set(x, y);
   }
   EXPECT_EQ(choose_blob(mask, {.join_gap = 0.05}), mask);

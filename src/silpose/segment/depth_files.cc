@@ -9,7 +9,7 @@ namespace {
 Result<DepthImage> read(const std::filesystem::path& path, int width, int height) {
   Result<DepthImage> image = read_depth_image(path);
   if (image && (image->width() != width || image->height() != height)) {
-    return error("{}: depth of {}x{} for pictures of {}x{}", path.string(), image->width(), image->height(), width,
+    return error("{}: depth of {}x{} for images of {}x{}", path.string(), image->width(), image->height(), width,
                  height);
   }
   return image;

@@ -9,7 +9,7 @@
 namespace silpose {
 namespace {
 
-constexpr double kLittleMoves = 0.002;  // [guess] of the picture
+constexpr double kLittleMoves = 0.002;  // [guess] of the image
 
 class DepthSegmenter : public BlobSegmenter {
  public:

@@ -1,4 +1,4 @@
-// The segmenter by depth images, one per picture: what is in front of the scene, or in a range of depths. Made by
+// The segmenter by depth images, one per image: what is in front of the scene, or in a range of depths. Made by
 // make_segmenter().
 // Threads: one thread per segmenter.
 #pragma once

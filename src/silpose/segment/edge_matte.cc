@@ -30,8 +30,8 @@ constexpr std::array<SampleRule, 2> kRounds = {SampleRule{2.5f, 2}, SampleRule{2
 constexpr float kThinDepth = 1.2f;
 constexpr float kFarthest = 4;   // px beyond the band, of a sample
 constexpr float kStray = 16;     // grey levels that a pixel may lie off the line between the two sides' colours
-constexpr float kContrast = 12;  // grey levels between the two sides' colours at which picture and mask count alike
-constexpr float kMisfit = 4;     // how much a background that does not fit counts against the picture
+constexpr float kContrast = 12;  // grey levels between the two sides' colours at which image and mask count alike
+constexpr float kMisfit = 4;     // how much a background that does not fit counts against the image
 constexpr float kLeastWeight = 1e-4f, kDarkest = 0.4f, kBrightest = 1.5f;
 
 float square(float x) { return x * x; }
@@ -125,7 +125,7 @@ struct SceneNow {
 
 // Where a mask's edge may be, and what is around it; the same however often the edge is moved within it.
 struct EdgeScene {
-  cv::Rect part;         // of the picture
+  cv::Rect part;         // of the image
   int band;              // px
   cv::Mat seen, behind;  // [h, w, 3] of the part
   cv::Mat known;         // [h, w] of the part; empty: everywhere

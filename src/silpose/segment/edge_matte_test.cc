@@ -12,7 +12,7 @@ namespace {
 class RefineEdge : public testing::Test {
  protected:
   const TestScene scene;
-  const ByteImage empty = to_luma_chroma(scene.backdrop()), picture = to_luma_chroma(scene.picture(60, 3));
+  const ByteImage empty = to_luma_chroma(scene.backdrop()), image = to_luma_chroma(scene.image(60, 3));
   const Mask truth = scene.subject(60);
 };
 
@@ -21,27 +21,27 @@ TEST_F(RefineEdge, BringsAWideAndANarrowMaskBackToTheSubject) {
     const Mask start = grow(truth, by);
     EXPECT_LT(intersection_over_union(start, truth), 0.9) << by;
     // A band of 2 % of 64 pixels is 2 wide: nearly all of a shift of 2 is within reach.
-    EXPECT_GT(intersection_over_union(refine_edge(start, picture, empty).mask, truth), 0.96) << by;
+    EXPECT_GT(intersection_over_union(refine_edge(start, image, empty).mask, truth), 0.96) << by;
   }
 }
 
 TEST_F(RefineEdge, TheBackgroundMayBeDarkerNow) {
   TestScene dusk = scene;
   dusk.exposure = 0.75;
-  const Mask found = refine_edge(grow(truth, 2), to_luma_chroma(dusk.picture(60, 3)), empty).mask;
+  const Mask found = refine_edge(grow(truth, 2), to_luma_chroma(dusk.image(60, 3)), empty).mask;
   EXPECT_GT(intersection_over_union(found, truth), 0.96);
 }
 
 TEST_F(RefineEdge, LeavesWhatIsNotKnownOrFarFromTheEdge) {
   const Mask start = grow(truth, 2), nothing(scene.width, scene.height);
-  const EdgeMatte unknown = refine_edge(start, picture, empty, &nothing);
+  const EdgeMatte unknown = refine_edge(start, image, empty, &nothing);
   EXPECT_EQ(unknown.mask, start);
   EXPECT_EQ(unknown.confidence, ByteImage(scene.width, scene.height, 1, 255));
   Mask hole = truth;
   for (int y = 50; y < 62; ++y) {
     for (int x = 66; x < 78; ++x) hole.set(x, y, false);
   }
-  EXPECT_FALSE(refine_edge(hole, picture, empty).mask.get(72, 56));  // 6 from the hole's edge
+  EXPECT_FALSE(refine_edge(hole, image, empty).mask.get(72, 56));  // 6 from the hole's edge
 }
 
 TEST_F(RefineEdge, AnotherBackgroundHasLittleSay) {
@@ -51,12 +51,12 @@ TEST_F(RefineEdge, AnotherBackgroundHasLittleSay) {
       for (int c = 0; c < 3; ++c) other.at(x, y, c) = empty.at((x + 6) % other.width(), (y + 6) % other.height(), c);
     }
   }
-  EXPECT_GT(intersection_over_union(refine_edge(truth, picture, other).mask, truth), 0.96);
+  EXPECT_GT(intersection_over_union(refine_edge(truth, image, other).mask, truth), 0.96);
 }
 
 TEST_F(RefineEdge, ASleeveSaysNothingOfTheHand) {
   // The lower rows have another colour, which lies on the other side of the background's; the mask is right.
-  ByteImage dressed = picture;
+  ByteImage dressed = image;
   for (int y = 80; y < 90; ++y) {
     for (int x = 60; x < 84; ++x) {
       dressed.at(x, y, 0) = 170;
@@ -69,7 +69,7 @@ TEST_F(RefineEdge, ASleeveSaysNothingOfTheHand) {
 }
 
 TEST_F(RefineEdge, SureOnlyWhereTheColoursTell) {
-  ByteImage alike = picture;  // the subject's right half looks like what is behind it
+  ByteImage alike = image;  // the subject's right half looks like what is behind it
   for (int y = 30; y < 90; ++y) {
     for (int x = 72; x < 84; ++x) {
       for (int c = 0; c < 3; ++c) alike.at(x, y, c) = empty.at(x, y, c);
@@ -82,8 +82,8 @@ TEST_F(RefineEdge, SureOnlyWhereTheColoursTell) {
 
 TEST_F(RefineEdge, NothingInNothingOut) {
   const Mask nothing(scene.width, scene.height);
-  EXPECT_EQ(refine_edge(nothing, picture, empty).mask.count(), 0);
-  EXPECT_THROW((void)refine_edge(Mask(3, 3), picture, empty), std::invalid_argument);
+  EXPECT_EQ(refine_edge(nothing, image, empty).mask.count(), 0);
+  EXPECT_THROW((void)refine_edge(Mask(3, 3), image, empty), std::invalid_argument);
 }
 
 }  // namespace

@@ -103,8 +103,8 @@ void ForegroundFinder::weigh_evidence(const ByteImage& luma_chroma, float gain) 
                       .gain = gain,
                       .width = width};
       for (int v = -kTextureReach; v <= kTextureReach; ++v) {
-        const int in_picture = std::clamp(y + v, 0, model_.height() - 1);
-        row.texture[static_cast<size_t>(v + kTextureReach)] = &texture_[static_cast<size_t>(in_picture) * width];
+        const int in_image = std::clamp(y + v, 0, model_.height() - 1);
+        row.texture[static_cast<size_t>(v + kTextureReach)] = &texture_[static_cast<size_t>(in_image) * width];
       }
       float* evidence = &evidence_[(static_cast<size_t>(y) + 1) * stride_ + 1];
       weigh_evidence_row(row, least.data(), evidence, differs_.row(y).data());
@@ -229,7 +229,7 @@ void ForegroundFinder::smooth_beliefs() {
       std::copy(next_.begin() + at + x0, next_.begin() + at + x1, belief_.begin() + at + x0);
     });
   }
-  // What is chosen in the next picture is not tied to what was left of this one.
+  // What is chosen in the next image is not tied to what was left of this one.
   for_each_run([&](int x0, int x1, int y) {
     const auto at = static_cast<ptrdiff_t>((static_cast<size_t>(y) + 1) * stride_ + 1);
     for (auto* ties : {&right_, &down_, &down_right_, &down_left_}) {
@@ -300,7 +300,7 @@ ByteImage ForegroundFinder::confidence(const Mask& found) const {
 
 Mask ForegroundFinder::find(const ByteImage& luma_chroma, const Image<float>* others) {
   check(luma_chroma.width() == model_.width() && luma_chroma.height() == model_.height() && luma_chroma.channels() == 3,
-        "ForegroundFinder: picture {}x{}x{}, background {}x{}", luma_chroma.width(), luma_chroma.height(),
+        "ForegroundFinder: image {}x{}x{}, background {}x{}", luma_chroma.width(), luma_chroma.height(),
         luma_chroma.channels(), model_.width(), model_.height());
   const float gain = exposure_gain(model_, luma_chroma);
   compare_texture(luma_chroma);

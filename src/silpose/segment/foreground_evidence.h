@@ -13,7 +13,7 @@ namespace silpose {
 // angle and is a narrow strip. [guess]
 inline constexpr int kTextureReach = 1;
 
-// Rows of pictures [W, 3] in Y, Cr, Cb, of those within kTextureReach that there are.
+// Rows of images [W, 3] in Y, Cr, Cb, of those within kTextureReach that there are.
 struct TextureRows {
   static constexpr size_t kMost = 2 * kTextureReach + 1;
   std::array<const uint8_t*, kMost> seen, background;
@@ -26,7 +26,7 @@ void compare_texture_row(const TextureRows& rows, size_t width, int32_t* sums, f
 // How many numbers `sums` has.
 size_t texture_sums_size(size_t width);
 
-// One row [W] of a picture and of its background, both [W, 3] in Y, Cr, Cb, and of their means around each pixel.
+// One row [W] of an image and of its background, both [W, 3] in Y, Cr, Cb, and of their means around each pixel.
 struct EvidenceRow {
   const uint8_t *seen, *background, *seen_around, *background_around;
   std::array<const float*, 3> inverse_noise;             // of each channel

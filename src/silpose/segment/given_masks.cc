@@ -65,8 +65,8 @@ class GivenMasks : public Segmenter {
       if ((*frame)->index + offset_ < index) continue;
       const ByteImage& mask = (*frame)->images[0];
       if (mask.width() != image.width() || mask.height() != image.height()) {
-        return error("{}: mask {} is {}x{}, its picture {}x{}", name_, index, mask.width(), mask.height(),
-                     image.width(), image.height());
+        return error("{}: mask {} is {}x{}, its image {}x{}", name_, index, mask.width(), mask.height(), image.width(),
+                     image.height());
       }
       return judge(white_of(checked(mask)));
     }
@@ -82,7 +82,7 @@ class GivenMasks : public Segmenter {
   [[nodiscard]] int64_t first_index() const override { return masks_ ? masks_->first_index() + offset_ : 0; }
 
  private:
-  // Warns once of a picture that is not a mask.
+  // Warns once of an image that is not a mask.
   const ByteImage& checked(const ByteImage& mask) {
     bool has_white = false;
     if (!has_warned_ && !is_black_and_white(mask, has_white)) {

@@ -1,4 +1,4 @@
-// The segmenters that only pass masks on: masks from files, one per picture, or pictures that are masks. Made by
+// The segmenters that only pass masks on: masks from files, one per image, or images that are masks. Made by
 // make_segmenter().
 // Threads: one thread per segmenter.
 #pragma once
@@ -15,12 +15,12 @@
 
 namespace silpose {
 
-// Mask number i belongs to picture number i + offset; without `masks` every picture is its own mask. White (>= 128) is
+// Mask number i belongs to image number i + offset; without `masks` every image is its own mask. White (>= 128) is
 // set. `name`: of what holds the masks.
 std::unique_ptr<Segmenter> make_given_masks(std::string name, std::optional<Video> masks, int64_t offset,
                                             const CleanUpOptions& clean_up, std::vector<std::string> warnings = {});
 
-// Whether a video's pictures are masks: black and white alone, judged by the first ones that are not all black.
+// Whether a video's images are masks: black and white alone, judged by the first ones that are not all black.
 // Errors: those of Video::next().
 Result<bool> shows_masks(Video& video);
 

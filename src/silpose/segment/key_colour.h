@@ -26,7 +26,7 @@ struct LumaChroma {
   [[nodiscard]] float chroma() const { return std::hypot(cr, cb); }
 };
 
-// Of a picture in Y, Cr, Cb. REQUIRES: inside the picture.
+// Of an image in Y, Cr, Cb. REQUIRES: inside the image.
 inline LumaChroma luma_chroma_at(const ByteImage& image, int x, int y) {
   return {static_cast<float>(image.at(x, y, 0)), static_cast<float>(image.at(x, y, 1)) - 128,
           static_cast<float>(image.at(x, y, 2)) - 128};
@@ -39,7 +39,7 @@ struct Dominant {
   float share = 0;  // of the pixels
 };
 
-// Without a key the mean colour of the commonest saturated hue, where the picture's border counts double, and skin's
+// Without a key the mean colour of the commonest saturated hue, where the image's border counts double, and skin's
 // and wood's hues do not; with a key that of the saturated pixels of its hue. Pixels that are not set in `keep` are
 // ignored. REQUIRES: at least one sample.
 Dominant dominant_colour(const BackgroundSamples& samples, const std::optional<KeyColour>& key,

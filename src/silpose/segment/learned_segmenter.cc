@@ -20,13 +20,13 @@ namespace {
 // sight. [guess]
 constexpr double kPresentAtFirst = 0.8, kStillPresent = 0.5;
 constexpr int kMaxLooks = 8;                              // until the square fits the person
-constexpr std::array<double, 3> kZooms = {1, 1.75, 3.5};  // small persons are detected in parts of the picture,
-constexpr int kSearchEvery = 10;                          // but not in every picture without a person
+constexpr std::array<double, 3> kZooms = {1, 1.75, 3.5};  // small persons are detected in parts of the image,
+constexpr int kSearchEvery = 10;                          // but not in every image without a person
 constexpr double kMinSide = 24;                           // px, of a square with a person
 constexpr float kSureLogit = 5;                           // belief from which a pixel is certain
-constexpr size_t kMaxLearned = 40;                        // pictures from which a background is learned
+constexpr size_t kMaxLearned = 40;                        // images from which a background is learned
 
-bool is_settled(const PictureSquare& before, const PictureSquare& after) {
+bool is_settled(const ImageSquare& before, const ImageSquare& after) {
   const double turned = std::remainder(after.turn_rad - before.turn_rad, 2 * std::numbers::pi);
   return std::hypot(after.x - before.x, after.y - before.y) < 0.02 * after.side &&
          std::abs(after.side - before.side) < 0.02 * after.side && std::abs(turned) < 0.03;
@@ -40,16 +40,16 @@ class LearnedSegmenter : public Segmenter {
         clean_up_(clean_up),
         monitor_(removed_by(clean_up.garbage_mask)) {}
 
-  // A few dozen pictures show what is behind; the network is slow.
+  // A few dozen images show what is behind; the network is slow.
   void learn(const BackgroundSamples& samples) {
     const size_t step = (samples.images.size() + kMaxLearned - 1) / kMaxLearned;
-    std::vector<ByteImage> pictures;
+    std::vector<ByteImage> images;
     std::vector<Mask> masks;
     for (size_t i = 0; i < samples.images.size(); i += step) {
-      pictures.push_back(samples.images[i]);
+      images.push_back(samples.images[i]);
       masks.push_back(find_mask(from_luma_chroma(samples.images[i])).kept);
     }
-    plate_ = learn_plate(pictures, masks);
+    plate_ = learn_plate(images, masks);
     square_.reset();
     num_without_ = num_lost_ = 0;
   }
@@ -83,8 +83,7 @@ class LearnedSegmenter : public Segmenter {
           fmt::format("the person was lost {} time{} and detected again: it may be another person (--region helps)",
                       num_lost_, num_lost_ == 1 ? "" : "s"));
     }
-    if (saw_others_)
-      warnings.emplace_back("several people are in the picture; the largest is followed (--region helps)");
+    if (saw_others_) warnings.emplace_back("several people are in the image; the largest is followed (--region helps)");
     return warnings;
   }
   [[nodiscard]] std::shared_ptr<const Mask> ignored() const override { return monitor_.ignored(); }
@@ -112,7 +111,7 @@ class LearnedSegmenter : public Segmenter {
     if (!reading) reading = find(image);
     Found found{Mask(image.width(), image.height()), ByteImage(image.width(), image.height(), 1, 255)};
     if (reading) {
-      const Image<float> logits = reading->logits_in_picture(image.width(), image.height());
+      const Image<float> logits = reading->logits_in_image(image.width(), image.height());
       Mask person(image.width(), image.height());
       for (int y = 0; y < image.height(); ++y) {
         const auto row = logits.row(y);
@@ -141,7 +140,7 @@ class LearnedSegmenter : public Segmenter {
   }
 
   static bool can_go_on(const PersonReading& reading, double least_presence) {
-    const PictureSquare next = reading.next_square();
+    const ImageSquare next = reading.next_square();
     return reading.presence >= least_presence && next.side >= kMinSide && next.side < 1e5;
   }
 
@@ -152,9 +151,9 @@ class LearnedSegmenter : public Segmenter {
     for (size_t level = 0; level < num_levels; ++level) {
       const double side = std::max(area.width, area.height) / kZooms[level];
       std::vector<PersonDetection> found;
-      for (const PictureSquare& tile : tiles(area, side)) {
+      for (const ImageSquare& tile : tiles(area, side)) {
         for (const PersonDetection& detection : detector_.detect(image, tile)) {
-          const PictureSquare& at = detection.square;
+          const ImageSquare& at = detection.square;
           if (at.side >= kMinSide && at.x >= area.x && at.x < area.x + area.width && at.y >= area.y &&
               at.y < area.y + area.height) {
             found.push_back(detection);
@@ -179,14 +178,14 @@ class LearnedSegmenter : public Segmenter {
   }
 
   // Upright squares that cover the area and overlap by half.
-  static std::vector<PictureSquare> tiles(const Box& area, double side) {
+  static std::vector<ImageSquare> tiles(const Box& area, double side) {
     const auto count = [&](int length) { return std::max(1, static_cast<int>(std::ceil(2 * length / side)) - 1); };
     const auto middle = [&](int start, int length, int i, int n) {
       if (n == 1) return start + 0.5 * length;
       return start + 0.5 * side + i * (length - side) / (n - 1);
     };
     const int columns = count(area.width), rows = count(area.height);
-    std::vector<PictureSquare> squares;
+    std::vector<ImageSquare> squares;
     for (int row = 0; row < rows; ++row) {
       for (int column = 0; column < columns; ++column) {
         squares.push_back(
@@ -201,8 +200,8 @@ class LearnedSegmenter : public Segmenter {
   CleanUpOptions clean_up_;
   TrustMonitor monitor_;
   std::optional<Plate> plate_;
-  std::optional<PictureSquare> square_;  // where the person is looked for next
-  int num_without_ = 0;                  // pictures since a person was seen
+  std::optional<ImageSquare> square_;  // where the person is looked for next
+  int num_without_ = 0;                // images since a person was seen
   int num_lost_ = 0;
   bool saw_others_ = false;
 };

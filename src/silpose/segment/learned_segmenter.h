@@ -1,5 +1,5 @@
 // The segmenter by a network trained on people: no background is needed, and none learned. A person is detected in the
-// whole picture (or the region) and then followed from picture to picture. Made by make_segmenter().
+// whole image (or the region) and then followed from image to image. Made by make_segmenter().
 // Based on: person_network.h, plate.h, edge_matte.h.
 // Threads: one thread per segmenter; works on all cores itself.
 #pragma once

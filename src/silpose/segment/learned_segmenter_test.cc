@@ -145,7 +145,7 @@ Directions directions_of(const Keypoints3D& keypoints) {
   });
 }
 
-// Of the body, in the axes of keypoints that were found in the first camera's picture of a frame.
+// Of the body, in the axes of keypoints that were found in the first camera's image of a frame.
 Directions true_directions(const SyntheticSequence& scene, int frame, const Keypoints3D& found) {
   const PinholeCamera& camera = scene.cameras[0];
   const Eigen::Vector3d ray = camera.ray_from_pixel({found.centre_x, found.centre_y});
@@ -203,16 +203,16 @@ TEST(LearnedSegmenter, TellsLeftFromRightAndNearFromFar) {
   }
 }
 
-// What a turned picture shows is turned in the picture, and as far away as it was. The network was within 5 degrees of
+// What a turned image shows is turned in the image, and as far away as it was. The network was within 5 degrees of
 // that, of the mirrored one within 13.
-TEST(LearnedSegmenter, DirectionsRollAndMirrorWithThePicture) {
+TEST(LearnedSegmenter, DirectionsRollAndMirrorWithTheImage) {
   const SyntheticSequence scene = reaching_person(35);
-  const auto see = [](const ByteImage& picture) {
-    return directions_of(segmenter()->segment(picture, 0).value().keypoints_3d);
+  const auto see = [](const ByteImage& image) {
+    return directions_of(segmenter()->segment(image, 0).value().keypoints_3d);
   };
-  const ByteImage picture = ColourScene(scene, 0).draw(0);
-  const Directions upright = see(picture), clockwise = see(rolled(picture)),
-                   counter_clockwise = see(rolled(rolled(rolled(picture)))), in_mirror = see(mirrored(picture));
+  const ByteImage image = ColourScene(scene, 0).draw(0);
+  const Directions upright = see(image), clockwise = see(rolled(image)),
+                   counter_clockwise = see(rolled(rolled(rolled(image)))), in_mirror = see(mirrored(image));
   for (const auto& [line, x] : upright) {
     const auto& [from, to] = line;
     EXPECT_LT(degrees_between(clockwise.at(line), {-x.y(), x.x(), x.z()}), 10) << from << to;

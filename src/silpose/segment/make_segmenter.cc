@@ -18,7 +18,7 @@
 namespace silpose {
 namespace {
 
-// [guess] Fractions of the picture (or the region) from which a warning is due.
+// [guess] Fractions of the image (or the region) from which a warning is due.
 constexpr double kMuchHalfCovered = 0.002, kLittleMoves = 0.002;
 
 std::vector<std::string> doubts(const std::string& input, const BackgroundModel& model,
@@ -31,10 +31,10 @@ std::vector<std::string> doubts(const std::string& input, const BackgroundModel&
                     input)};
   }
   if (doubt.half_covered > kMuchHalfCovered) {
-    return {fmt::format(
-        "{}: in {:.1f} % of the picture something stays for a large part of the clip; a subject who does not "
-        "move may have been mistaken for background (--background with a plate or lead-in:SECONDS helps)",
-        input, 100 * doubt.half_covered)};
+    return {
+        fmt::format("{}: in {:.1f} % of the image something stays for a large part of the clip; a subject who does not "
+                    "move may have been mistaken for background (--background with a plate or lead-in:SECONDS helps)",
+                    input, 100 * doubt.half_covered)};
   }
   return {};
 }
@@ -42,20 +42,20 @@ std::vector<std::string> doubts(const std::string& input, const BackgroundModel&
 Result<void> check_sizes(const Video& video, const CleanUpOptions& clean_up) {
   const int width = video.width(), height = video.height();
   if (clean_up.garbage_mask && (clean_up.garbage_mask->width() != width || clean_up.garbage_mask->height() != height)) {
-    return error("{}: pictures of {}x{}, the garbage mask is {}x{}", video.name(), width, height,
+    return error("{}: images of {}x{}, the garbage mask is {}x{}", video.name(), width, height,
                  clean_up.garbage_mask->width(), clean_up.garbage_mask->height());
   }
   if (const auto& region = clean_up.region) {
     if (region->x >= width || region->y >= height || region->x + region->width <= 0 ||
         region->y + region->height <= 0) {
-      return error("{}: the region {},{},{},{} lies outside its pictures of {}x{}", video.name(), region->x, region->y,
+      return error("{}: the region {},{},{},{} lies outside its images of {}x{}", video.name(), region->x, region->y,
                    region->width, region->height, width, height);
     }
   }
   return {};
 }
 
-// What to add to the number of one of `count` pictures (masks, depth), the first numbered `first`, for the number of
+// What to add to the number of one of `count` images (masks, depth), the first numbered `first`, for the number of
 // its frame. As many as frames (a container's own count may be off by one) belong together in their order, whatever
 // number they begin with; others by their numbers.
 Result<int64_t> offset_to_frames(const std::string& name, const char* what, int64_t first, int64_t count,
@@ -81,7 +81,7 @@ Result<std::unique_ptr<Segmenter>> make_masks(const Video& video, const Segmente
   Result<Video> masks = open_video(options.masks, {.default_fps = video.fps()});
   if (!masks) return masks.failure();
   if (masks->width() != video.width() || masks->height() != video.height()) {
-    return error("{}: masks of {}x{} for pictures of {}x{}", options.masks, masks->width(), masks->height(),
+    return error("{}: masks of {}x{} for images of {}x{}", options.masks, masks->width(), masks->height(),
                  video.width(), video.height());
   }
   const Result<int64_t> offset =
@@ -96,12 +96,12 @@ Result<BackgroundSamples> sample(Video& video, std::optional<int64_t> end_ns, Pr
   return sample_background(video, end_ns, progress);
 }
 
-// A picture, or a clip of the empty scene.
+// An image, or a clip of the empty scene.
 Result<BackgroundModel> model_from_plate(const std::string& plate, Video& video, ProgressSink* progress) {
   Result<Video> plates = open_video(plate);
   if (!plates) return plates.failure();
   if (plates->width() != video.width() || plates->height() != video.height()) {
-    return error("{}: a background of {}x{} for pictures of {}x{} in {}", plate, plates->width(), plates->height(),
+    return error("{}: a background of {}x{} for images of {}x{} in {}", plate, plates->width(), plates->height(),
                  video.width(), video.height(), video.name());
   }
   Result<std::optional<Frame>> first = plates->next();
@@ -124,7 +124,7 @@ Result<BackgroundModel> model_from_plate(const std::string& plate, Video& video,
 }
 
 Result<DepthFiles> open_depth(const SegmenterOptions& options, const Video& video) {
-  Result<PictureList> files = list_pictures(options.depth);
+  Result<ImageList> files = list_images(options.depth);
   if (!files) return files.failure();
   DepthFiles depth{.name = options.depth, .files = std::move(*files), .width = video.width(), .height = video.height()};
   const Result<int64_t> offset =

@@ -27,7 +27,7 @@ struct SegmenterOptions {
   // order, otherwise mask number i to frame number i.
   std::string masks;
   std::optional<KeyColour> key_colour;  // of the screen; absent: found from the clip
-  // 16-bit pictures in mm: a directory or a pattern; to frames as masks are. With kind background they are used
+  // 16-bit images in mm: a directory or a pattern; to frames as masks are. With kind background they are used
   // together with the colours.
   std::string depth;
   std::optional<DepthRange> depth_range;

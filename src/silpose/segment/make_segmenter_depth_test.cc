@@ -20,8 +20,8 @@ TEST_F(MakeSegmenterTest, DepthJoinsTheColours) {
   // A subject of the background's own colours, its shadow, and a sensor that now and then sees nothing.
   const TestScene scene{.shadow = 0.4};
   const auto camouflaged = [&](int i) {
-    ByteImage image = scene.picture(place(i), static_cast<uint64_t>(i));
-    const ByteImage empty = scene.picture(-100, static_cast<uint64_t>(i) + 1000);
+    ByteImage image = scene.image(place(i), static_cast<uint64_t>(i));
+    const ByteImage empty = scene.image(-100, static_cast<uint64_t>(i) + 1000);
     for (int v = 0; v < image.height(); ++v) {
       for (int u = 0; u < image.width(); ++u) {
         for (int c = 0; c < 3 && truth(i).get(u, v); ++c) image.at(u, v, c) = empty.at(u, v, c);
@@ -52,8 +52,8 @@ TEST_F(MakeSegmenterTest, DepthJoinsTheColours) {
     const auto segmenter = make_of(at(clip), options).value();
     double least = 1;
     for (int i = 15; i < 45; i += 5) {
-      const ByteImage image = clip == "same" ? camouflaged(i) : picture(i);
-      least = std::min(least, intersection_over_union(segmenter->segment(image, i)->mask, truth(i)));
+      const ByteImage shown = clip == "same" ? camouflaged(i) : image(i);
+      least = std::min(least, intersection_over_union(segmenter->segment(shown, i)->mask, truth(i)));
     }
     return least;
   };
@@ -89,8 +89,8 @@ TEST_F(MakeSegmenterTest, DepthSegmentsByItself) {
     EXPECT_EQ(segmenter->name(), range ? "depth 2.5 to 3.5 m" : "depth auto");
     EXPECT_THAT(segmenter->warnings(), IsEmpty());
     EXPECT_EQ(segmenter->first_index(), 0);  // as many as frames: in order, whatever they are numbered from
-    for (const int i : {0, 25, 49}) EXPECT_EQ(segmenter->segment(picture(i), i).value().mask, truth(i)) << i;
-    EXPECT_THAT(segmenter->segment(picture(49), 50).error().message, HasSubstr("50 depth images, frame 50 has none"));
+    for (const int i : {0, 25, 49}) EXPECT_EQ(segmenter->segment(image(i), i).value().mask, truth(i)) << i;
+    EXPECT_THAT(segmenter->segment(image(49), 50).error().message, HasSubstr("50 depth images, frame 50 has none"));
   }
 
   EXPECT_THAT(failure({.kind = "depth"}), HasSubstr("no depth images are given"));
@@ -100,12 +100,12 @@ TEST_F(MakeSegmenterTest, DepthSegmentsByItself) {
   EXPECT_THAT(failure({.kind = "depth", .depth = at("depth")}), HasSubstr("47 depth images for 50 frames of"));
   for (const char* folder : {"few", "small", "flat"}) fs::create_directories(at(folder));
   for (int i = 0; i < 2; ++i) {
-    write_image(at(fmt::format("few/{}.png", i)), picture(i)).value();
+    write_image(at(fmt::format("few/{}.png", i)), image(i)).value();
     write_depth_image(at(fmt::format("small/{}.png", i)), DepthImage(80, 60, 1, 900)).value();
     write_depth_image(at(fmt::format("flat/{}.png", i)), DepthImage(160, 120, 1, 900)).value();
   }
   EXPECT_THAT(make_of(at("few"), {.kind = "depth", .depth = at("small")}).error().message,
-              HasSubstr("small/0.png: depth of 80x60 for pictures of 160x120"));
+              HasSubstr("small/0.png: depth of 80x60 for images of 160x120"));
   EXPECT_THAT(make_of(at("few"), {.kind = "depth", .depth = at("flat")}).value()->warnings(),
               ElementsAre(HasSubstr("almost nothing is ever nearer than the background")));
 }

@@ -22,7 +22,7 @@ inline Result<std::unique_ptr<Segmenter>> make_of(const std::string& input, cons
   return make_segmenter(*video, options, progress);
 }
 
-// A clip of pictures at 10 frames per second: frames 0-9 empty, then the subject walks through, 5 pixels per frame.
+// A clip of images at 10 frames per second: frames 0-9 empty, then the subject walks through, 5 pixels per frame.
 class MakeSegmenterTest : public FolderTest {
  protected:
   static constexpr int kEmpty = 10, kFrames = 50;
@@ -30,14 +30,12 @@ class MakeSegmenterTest : public FolderTest {
   MakeSegmenterTest() {
     std::filesystem::create_directories(folder_ / "clip");
     for (int i = 0; i < kFrames; ++i) {
-      write_image(folder_ / "clip" / fmt::format("{:03}.png", i), picture(i)).value();
+      write_image(folder_ / "clip" / fmt::format("{:03}.png", i), image(i)).value();
     }
   }
 
   [[nodiscard]] static int place(int index) { return index < kEmpty ? -100 : -20 + 5 * (index - kEmpty); }
-  [[nodiscard]] ByteImage picture(int index) const {
-    return scene_.picture(place(index), static_cast<uint64_t>(index));
-  }
+  [[nodiscard]] ByteImage image(int index) const { return scene_.image(place(index), static_cast<uint64_t>(index)); }
   [[nodiscard]] Mask truth(int index) const { return scene_.subject(place(index)); }
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -51,7 +49,7 @@ class MakeSegmenterTest : public FolderTest {
   // From frame `first` on.
   void expect_finds_subject(Segmenter& segmenter, int first) const {
     for (int i = first; i < kFrames; ++i) {
-      const Observation result = segmenter.segment(picture(i), i).value();
+      const Observation result = segmenter.segment(image(i), i).value();
       if (truth(i).count() == 0) {
         EXPECT_TRUE(result.trust.nothing_found) << i;
       } else if (truth(i).count() == 24 * 60) {

@@ -34,7 +34,7 @@ TEST_F(MakeSegmenterTest, GoesOnFromItsState) {
     const auto second = make_of(at("clip"), options).value();
     for (int i = 0; i < kFrames; ++i) {
       if (i == 30) second->restore(whole->state());
-      const ByteImage shown = i == 35 ? picture(0) : picture(i);  // lost for once: the area jumps
+      const ByteImage shown = i == 35 ? image(0) : image(i);  // lost for once: the area jumps
       const Observation expected = whole->segment(shown, i).value();
       if (i < 30 && !second->sees_all()) continue;
       const Observation found = second->segment(shown, i).value();
@@ -53,9 +53,9 @@ TEST_F(MakeSegmenterTest, BackgroundOfTheLeadIn) {
 }
 
 TEST_F(MakeSegmenterTest, BackgroundFromAPlateOrAClipOfTheEmptyScene) {
-  write_image(at("plate.png"), scene_.picture(-100, 77)).value();
+  write_image(at("plate.png"), scene_.image(-100, 77)).value();
   std::filesystem::create_directories(at("empty"));
-  for (int i = 0; i < 8; ++i) write_image(at(fmt::format("empty/{}.png", i)), scene_.picture(-100, 80u + i)).value();
+  for (int i = 0; i < 8; ++i) write_image(at(fmt::format("empty/{}.png", i)), scene_.image(-100, 80u + i)).value();
   for (const char* background : {"plate.png", "empty"}) {
     const auto segmenter = make_of(at("clip"), {.background = BackgroundPlate{at(background)}}).value();
     expect_finds_subject(*segmenter, 0);
@@ -68,7 +68,7 @@ TEST_F(MakeSegmenterTest, OnlineMixturesLearnFromTheEmptyStart) {
     EXPECT_EQ(segmenter->name(), knn ? "background online:knn" : "background online");
     double worst = 1;
     for (int i = 0; i < kFrames; ++i) {
-      const Observation result = segmenter->segment(picture(i), i).value();
+      const Observation result = segmenter->segment(image(i), i).value();
       if (i < 10) {
         EXPECT_EQ(result.trust.overall, 0);
       } else if (truth(i).count() == 24 * 60) {
@@ -84,7 +84,7 @@ TEST_F(MakeSegmenterTest, GivenMasksComeThroughUnchanged) {
   const auto segmenter = make_of(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->name(), "masks");
   for (int i : {12, 13, 30, 49}) {  // indices may skip
-    EXPECT_EQ(segmenter->segment(picture(i), i).value().mask, truth(i)) << i;
+    EXPECT_EQ(segmenter->segment(image(i), i).value().mask, truth(i)) << i;
   }
 }
 
@@ -92,14 +92,14 @@ TEST_F(MakeSegmenterTest, MasksThatBeginLaterBelongToTheFramesOfTheirNumbers) {
   write_masks("masks", kFrames - 20, 20, 20);
   const auto segmenter = make_of(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->first_index(), 20);
-  EXPECT_EQ(segmenter->segment(picture(30), 30).value().mask, truth(30));
+  EXPECT_EQ(segmenter->segment(image(30), 30).value().mask, truth(30));
 }
 
 TEST_F(MakeSegmenterTest, AsManyMasksAsFramesBelongTogetherInOrder) {
   write_masks("masks", kFrames, 0, 1);  // numbered from 1, as some programs do
   const auto segmenter = make_of(at("clip"), {.masks = at("masks")}).value();
   EXPECT_EQ(segmenter->first_index(), 0);
-  EXPECT_EQ(segmenter->segment(picture(30), 30).value().mask, truth(30));
+  EXPECT_EQ(segmenter->segment(image(30), 30).value().mask, truth(30));
 }
 
 TEST_F(MakeSegmenterTest, MasksOfOtherFramesAreRefused) {
@@ -108,16 +108,16 @@ TEST_F(MakeSegmenterTest, MasksOfOtherFramesAreRefused) {
   write_masks("gap", kFrames);
   std::filesystem::remove(at("gap/031.png"));
   const auto segmenter = make_of(at("clip"), {.masks = at("gap")}).value();
-  EXPECT_TRUE(segmenter->segment(picture(30), 30).ok());
-  EXPECT_THAT(segmenter->segment(picture(31), 31).error().message, HasSubstr("frame 31 has none"));
+  EXPECT_TRUE(segmenter->segment(image(30), 30).ok());
+  EXPECT_THAT(segmenter->segment(image(31), 31).error().message, HasSubstr("frame 31 has none"));
 }
 
-TEST_F(MakeSegmenterTest, LeadInCountsFromTheFirstPictureWhateverItsNumber) {
+TEST_F(MakeSegmenterTest, LeadInCountsFromTheFirstImageWhateverItsNumber) {
   std::filesystem::create_directories(at("later"));
-  for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("later/{}.png", 200 + i)), picture(i)).value();
+  for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("later/{}.png", 200 + i)), image(i)).value();
   const auto segmenter = make_of(at("later"), {.background = BackgroundLeadIn{1}}, 10).value();
   EXPECT_EQ(segmenter->first_index(), 210);
-  EXPECT_GT(intersection_over_union(segmenter->segment(picture(30), 230).value().mask, truth(30)), 0.9);
+  EXPECT_GT(intersection_over_union(segmenter->segment(image(30), 230).value().mask, truth(30)), 0.9);
 }
 
 TEST_F(MakeSegmenterTest, TheInputItselfMayBeTheMasks) {
@@ -143,10 +143,10 @@ TEST_F(MakeSegmenterTest, AClipOfMasksIsTakenForMasks) {
   EXPECT_EQ(make_of(at("clip")).value()->name(), "background auto");
 }
 
-TEST_F(MakeSegmenterTest, PicturesThatAreNoMasksAreReported) {
+TEST_F(MakeSegmenterTest, ImagesThatAreNoMasksAreReported) {
   const auto segmenter = make_of(at("clip"), {.kind = "masks"}).value();
   EXPECT_THAT(segmenter->warnings(), IsEmpty());
-  for (int i = 0; i < 3; ++i) (void)segmenter->segment(picture(i), i).value();
+  for (int i = 0; i < 3; ++i) (void)segmenter->segment(image(i), i).value();
   EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("clip: not only black and white")));
 }
 
@@ -156,21 +156,21 @@ TEST_F(MakeSegmenterTest, TooFewMasks) {
 
   write_masks("one_less", kFrames - 1);  // a container's count may be off by one: found when it happens
   const auto segmenter = make_of(at("clip"), {.masks = at("one_less")}).value();
-  EXPECT_TRUE(segmenter->segment(picture(48), 48).ok());
-  EXPECT_THAT(segmenter->segment(picture(49), 49).error().message, HasSubstr("49 masks, frame 49 has none"));
+  EXPECT_TRUE(segmenter->segment(image(48), 48).ok());
+  EXPECT_THAT(segmenter->segment(image(49), 49).error().message, HasSubstr("49 masks, frame 49 has none"));
 }
 
 TEST_F(MakeSegmenterTest, OtherSizesAreRefused) {
   write_image(at("plate.png"), ByteImage(80, 60, 3)).value();
   EXPECT_THAT(failure({.background = BackgroundPlate{at("plate.png")}}),
-              HasSubstr("a background of 80x60 for pictures of 160x120"));
-  EXPECT_THAT(failure({.masks = at("plate.png")}), HasSubstr("masks of 80x60 for pictures of 160x120"));
+              HasSubstr("a background of 80x60 for images of 160x120"));
+  EXPECT_THAT(failure({.masks = at("plate.png")}), HasSubstr("masks of 80x60 for images of 160x120"));
   SegmenterOptions options;
   options.clean_up.garbage_mask = Mask(80, 60);
   EXPECT_THAT(failure(options), HasSubstr("garbage mask is 80x60"));
   options.clean_up.garbage_mask.reset();
   options.clean_up.region = Box{160, 0, 20, 20};
-  EXPECT_THAT(failure(options), HasSubstr("outside its pictures of 160x120"));
+  EXPECT_THAT(failure(options), HasSubstr("outside its images of 160x120"));
   const auto segmenter = make_of(at("clip")).value();
   EXPECT_FALSE(segmenter->segment(ByteImage(80, 60, 3), 0).ok());
 }
@@ -183,26 +183,27 @@ TEST_F(MakeSegmenterTest, SettingsThatCannotBe) {
   EXPECT_THAT(make_of(at("no_clip.mp4")).error().message, HasSubstr("no_clip.mp4: no such file"));
 }
 
-// The scene's subject in front of a green screen that covers all but the picture's left edge.
+// The scene's subject in front of a green screen that covers all but the image's left edge.
 TEST_F(MakeSegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
   const auto keyed = [&](int i) {
-    ByteImage image = picture(i);
+    ByteImage screened = image(i);
     const Mask mask = truth(i);
-    for (int y = 0; y < image.height(); ++y) {
-      for (int x = 12; x < image.width(); ++x) {
+    for (int y = 0; y < screened.height(); ++y) {
+      for (int x = 12; x < screened.width(); ++x) {
         for (int c = 0; c < 3; ++c) {
-          if (!mask.get(x, y)) image.at(x, y, c) = static_cast<uint8_t>(image.at(x, y, c) / 8 + (c == 1 ? 130 : 20));
+          if (!mask.get(x, y))
+            screened.at(x, y, c) = static_cast<uint8_t>(screened.at(x, y, c) / 8 + (c == 1 ? 130 : 20));
         }
       }
     }
-    return image;
+    return screened;
   };
   std::filesystem::create_directories(at("green"));
   for (int i = 0; i < kFrames; ++i) write_image(at(fmt::format("green/{:02}.png", i)), keyed(i)).value();
   SegmenterOptions options{.kind = "chroma"};
   auto segmenter = make_of(at("green"), options).value();
   EXPECT_THAT(segmenter->name(), HasSubstr("chroma #"));
-  EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("8 % of the picture lies outside the screen")));
+  EXPECT_THAT(segmenter->warnings(), ElementsAre(HasSubstr("8 % of the image lies outside the screen")));
   for (const int i : {0, 20, 30}) {
     const Observation result = segmenter->segment(keyed(i), i).value();
     EXPECT_GT(intersection_over_union(result.mask, truth(i)), 0.97) << i;
@@ -227,12 +228,12 @@ TEST_F(MakeSegmenterTest, ChromaKeysAndLeavesOutWhatLiesOutsideTheScreen) {
 TEST_F(MakeSegmenterTest, WarnsOfASubjectWhoStays) {
   std::filesystem::create_directories(at("still"));
   for (int i = 0; i < 12; ++i) {
-    write_image(at(fmt::format("still/{:02}.png", i)), scene_.picture(60, static_cast<uint64_t>(i))).value();
+    write_image(at(fmt::format("still/{:02}.png", i)), scene_.image(60, static_cast<uint64_t>(i))).value();
   }
   EXPECT_THAT(make_of(at("still")).value()->warnings(), ElementsAre(HasSubstr("almost nothing moves")));
   std::filesystem::create_directories(at("half"));
   for (int i = 0; i < 20; ++i) {
-    write_image(at(fmt::format("half/{:02}.png", i)), scene_.picture(i < 8 ? 60 : 6 * i, 5u + i)).value();
+    write_image(at(fmt::format("half/{:02}.png", i)), scene_.image(i < 8 ? 60 : 6 * i, 5u + i)).value();
   }
   EXPECT_THAT(make_of(at("half")).value()->warnings(), ElementsAre(HasSubstr("something stays")));
 }
@@ -254,13 +255,13 @@ TEST_F(MakeSegmenterTest, WhatAGarbageMaskRemovesIsIgnored) {
   SegmenterOptions kinds[] = {
       {.kind = "background"}, {.kind = "background", .background = BackgroundOnline{}}, {.masks = at("masks")}};
   for (SegmenterOptions& options : kinds) {
-    EXPECT_EQ(make_of(at("clip"), options).value()->segment(picture(0), 0).value().ignored, nullptr);
+    EXPECT_EQ(make_of(at("clip"), options).value()->segment(image(0), 0).value().ignored, nullptr);
     options.clean_up.garbage_mask = garbage;
     const auto segmenter = make_of(at("clip"), options).value();
     ASSERT_NE(segmenter->ignored(), nullptr) << segmenter->name();
     EXPECT_EQ(segmenter->ignored()->bounding_box(), (Box{100, 0, 60, 120}));
     for (int i = 0; i < 45; ++i) {
-      const Observation seen = segmenter->segment(picture(i), i).value();
+      const Observation seen = segmenter->segment(image(i), i).value();
       if (seen.trust.nothing_found) continue;
       EXPECT_EQ(seen.ignored, segmenter->ignored()) << segmenter->name() << " " << i;
       EXPECT_EQ(and_count(seen.mask, *seen.ignored), 0) << segmenter->name() << " " << i;
@@ -273,7 +274,7 @@ TEST_F(MakeSegmenterTest, LearnsFromFramesInMemoryOfEachCamera) {
   std::vector<std::unique_ptr<FrameSource>> sources;
   for (int c = 0; c < 2; ++c) {
     std::vector<ByteImage> images;
-    for (int i = 0; i < kFrames; ++i) images.push_back(picture(i));
+    for (int i = 0; i < kFrames; ++i) images.push_back(image(i));
     sources.push_back(std::make_unique<MemorySource>(std::move(images), 10));
   }
   Video video = join_sources(std::move(sources)).value();

@@ -65,7 +65,7 @@ double overlap(const FoundBox& a, const FoundBox& b) {
 
 }  // namespace
 
-PictureSquare PersonReading::next_square() const {
+ImageSquare PersonReading::next_square() const {
   const PersonLandmark &middle = landmarks[kPersonMiddle], &above = landmarks[kAbovePerson];
   return square_around(middle.x, middle.y, above.x, above.y);
 }
@@ -84,8 +84,8 @@ Keypoints3D PersonReading::body_keypoints_3d() const {
   return keypoints;
 }
 
-Image<float> PersonReading::logits_in_picture(int width, int height) const {
-  return values_in_picture(mask_logits, kReadSize, square, width, height, -10);
+Image<float> PersonReading::logits_in_image(int width, int height) const {
+  return values_in_image(mask_logits, kReadSize, square, width, height, -10);
 }
 
 Result<PersonNetwork> PersonNetwork::load(const std::filesystem::path& folder) {
@@ -96,13 +96,13 @@ Result<PersonNetwork> PersonNetwork::load(const std::filesystem::path& folder) {
   return PersonNetwork(std::move(*network));
 }
 
-PersonReading PersonNetwork::read(const ByteImage& image, const PictureSquare& square) {
+PersonReading PersonNetwork::read(const ByteImage& image, const ImageSquare& square) {
   std::vector<std::vector<float>> outputs = network_.run(sample_square(image, square, kReadSize));
   PersonReading reading{.presence = outputs[1][0], .square = square, .mask_logits = std::move(outputs[2])};
   reading.landmarks.resize(kNumPersonLandmarks);
   for (size_t i = 0; i < kNumPersonLandmarks; ++i) {
     const float* values = &outputs[0][5 * i];  // x, y, z, visibility, presence
-    const auto [x, y] = square.in_picture(values[0] / kReadSize, values[1] / kReadSize);
+    const auto [x, y] = square.in_image(values[0] / kReadSize, values[1] / kReadSize);
     // In space the square is upright: its turn is undone about the viewing ray.
     const float* in_space = &outputs[3][3 * i];
     const double c = std::cos(square.turn_rad), s = std::sin(square.turn_rad);
@@ -122,7 +122,7 @@ Result<PersonDetector> PersonDetector::load(const std::filesystem::path& folder)
   return PersonDetector(std::move(*network));
 }
 
-std::vector<PersonDetection> PersonDetector::detect(const ByteImage& image, const PictureSquare& square) {
+std::vector<PersonDetection> PersonDetector::detect(const ByteImage& image, const ImageSquare& square) {
   std::vector<float> input = sample_square(image, square, kDetectSize);
   for (float& value : input) value = 2 * value - 1;
   const std::vector<std::vector<float>> outputs = network_.run(input);
@@ -144,8 +144,8 @@ std::vector<PersonDetection> PersonDetector::detect(const ByteImage& image, cons
   for (const FoundBox& box : boxes) {
     if (std::ranges::any_of(kept, [&](const FoundBox& other) { return overlap(box, other) > kSamePerson; })) continue;
     kept.push_back(box);
-    const auto [x, y] = square.in_picture(box.middle_x, box.middle_y);
-    const auto [up_x, up_y] = square.in_picture(box.above_x, box.above_y);
+    const auto [x, y] = square.in_image(box.middle_x, box.middle_y);
+    const auto [up_x, up_y] = square.in_image(box.above_x, box.above_y);
     detections.push_back({box.score, square_around(x, y, up_x, up_y)});
   }
   return detections;

@@ -12,21 +12,21 @@ namespace {
 
 constexpr double kMargin = 0.04;     // [guess] of the larger side of the mask's box
 constexpr size_t kLeastTimes = 5;    // [guess]
-constexpr double kLeastShare = 0.1;  // [guess] of the pictures
+constexpr double kLeastShare = 0.1;  // [guess] of the images
 
 }  // namespace
 
-Plate learn_plate(const std::vector<ByteImage>& pictures, const std::vector<Mask>& subjects) {
-  check(!pictures.empty() && pictures.size() == subjects.size(), "learn_plate: {} pictures, {} masks", pictures.size(),
+Plate learn_plate(const std::vector<ByteImage>& images, const std::vector<Mask>& subjects) {
+  check(!images.empty() && images.size() == subjects.size(), "learn_plate: {} images, {} masks", images.size(),
         subjects.size());
-  const int width = pictures[0].width(), height = pictures[0].height();
+  const int width = images[0].width(), height = images[0].height();
   Plate plate{ByteImage(width, height, 3), Mask(width, height)};
   std::vector<const ByteImage*> used;
   std::vector<Mask> taken;
-  for (size_t k = 0; k < pictures.size(); ++k) {
+  for (size_t k = 0; k < images.size(); ++k) {
     const Box box = subjects[k].bounding_box();
     if (box.empty()) continue;
-    used.push_back(&pictures[k]);
+    used.push_back(&images[k]);
     taken.push_back(grow(subjects[k], static_cast<int>(std::lround(kMargin * std::max(box.width, box.height)))));
   }
   const size_t enough = std::max(kLeastTimes, static_cast<size_t>(kLeastShare * static_cast<double>(used.size())));

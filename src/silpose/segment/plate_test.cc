@@ -12,14 +12,14 @@ namespace {
 
 TEST(LearnPlate, SeesBehindWhoIsThereMostOfTheTime) {
   const TestScene scene;
-  std::vector<ByteImage> pictures;
+  std::vector<ByteImage> images;
   std::vector<Mask> masks;
-  for (int i = 0; i < 40; ++i) {  // stands for three quarters of the clip, and never leaves the picture
+  for (int i = 0; i < 40; ++i) {  // stands for three quarters of the clip, and never leaves the image
     const int x = i < 30 ? 60 : 100;
-    pictures.push_back(to_luma_chroma(scene.picture(x, static_cast<uint64_t>(i))));
+    images.push_back(to_luma_chroma(scene.image(x, static_cast<uint64_t>(i))));
     masks.push_back(scene.subject(x));
   }
-  const Plate plate = learn_plate(pictures, masks);
+  const Plate plate = learn_plate(images, masks);
   const ByteImage truth = to_luma_chroma(scene.backdrop());
   EXPECT_EQ(plate.known.count(), scene.width * scene.height);
   for (int y = 35; y < 85; ++y) {
@@ -30,17 +30,17 @@ TEST(LearnPlate, SeesBehindWhoIsThereMostOfTheTime) {
 
 TEST(LearnPlate, KnowsWhatItDoesNotKnow) {
   const TestScene scene;
-  std::vector<ByteImage> pictures;
+  std::vector<ByteImage> images;
   std::vector<Mask> masks;
   for (int i = 0; i < 20; ++i) {
-    pictures.push_back(to_luma_chroma(scene.picture(60, static_cast<uint64_t>(i))));
+    images.push_back(to_luma_chroma(scene.image(60, static_cast<uint64_t>(i))));
     masks.push_back(i < 16 ? scene.subject(60) : Mask(scene.width, scene.height));  // not found in the last four
   }
-  const Plate plate = learn_plate(pictures, masks);
+  const Plate plate = learn_plate(images, masks);
   EXPECT_FALSE(plate.known.get(70, 60));
   EXPECT_FALSE(plate.known.get(58, 60)) << "the mask's edge is not trusted";
   EXPECT_TRUE(plate.known.get(40, 60));
-  EXPECT_EQ(learn_plate({pictures[0]}, {Mask(scene.width, scene.height)}).known.count(), 0);
+  EXPECT_EQ(learn_plate({images[0]}, {Mask(scene.width, scene.height)}).known.count(), 0);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ struct TestScene {
   int width = 160, height = 120;
   double noise = 2;     // grey levels
   double shadow = 0;    // 0: none; 0.3: darkens the floor next to the subject by that fraction
-  double exposure = 1;  // of the whole picture
+  double exposure = 1;  // of the whole image
 
   [[nodiscard]] ByteImage backdrop() const {
     ByteImage image(width, height, 3);
@@ -39,8 +39,8 @@ struct TestScene {
     return mask;
   }
 
-  // Without a subject where x is outside the picture.
-  [[nodiscard]] ByteImage picture(int x, uint64_t seed) const {
+  // Without a subject where x is outside the image.
+  [[nodiscard]] ByteImage image(int x, uint64_t seed) const {
     ByteImage image = backdrop();
     const Mask mask = subject(x);
     Rng rng(seed);

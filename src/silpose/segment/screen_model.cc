@@ -13,7 +13,7 @@
 namespace silpose {
 namespace {
 
-constexpr float kLeastShare = 0.08f;  // [guess] of the picture, for a screen
+constexpr float kLeastShare = 0.08f;  // [guess] of the image, for a screen
 
 // Deeper shadow than this part of the screen's luma is treated as something black. [tuned on two real clips, with a
 // green cloth and a yellow-green wall]
@@ -28,7 +28,7 @@ constexpr int kCell = 8;                                  // pixels; the screen'
 constexpr float kSureLikeness = 0.65f, kSureCell = 0.9f;  // parts: what the model is learned from
 constexpr float kLeastSeen = 0.02f;                       // of a neighbourhood, for its colour to be known from there
 constexpr float kLeastPart = 0.1f;                        // of the largest piece of screen, for another piece to count
-constexpr double kEdgeOfScreen = 0.006;                   // of the picture's height: colours mix there
+constexpr double kEdgeOfScreen = 0.006;                   // of the image's height: colours mix there
 constexpr int kEdgeWindow = 7;                            // pixels [tuned on a rendered dance: 5 or 7]
 constexpr double kFlatLuma = 12;                          // grey levels of deviation below which the luma says little
 
@@ -102,9 +102,9 @@ Image<float> fill_in(const cv::Mat& cells, int width, int height) {
 
 // Video carries colour at half the resolution, so the matte's edges are wide and lie a pixel off where the luma changes
 // as well. Where it does, the matte follows it, as a linear function of it in each small window.
-void follow_luma(cv::Mat& matte, const cv::Mat& picture) {
+void follow_luma(cv::Mat& matte, const cv::Mat& image) {
   cv::Mat luma, mean_luma, mean_matte, variance, covariance, slope, offset, trust;
-  cv::extractChannel(picture, luma, 0);
+  cv::extractChannel(image, luma, 0);
   luma.convertTo(luma, CV_32F);
   const auto average = [](const cv::Mat& from, cv::Mat& to) {
     cv::boxFilter(from, to, CV_32F, {kEdgeWindow, kEdgeWindow}, {-1, -1}, true, cv::BORDER_REPLICATE);
@@ -124,7 +124,7 @@ void follow_luma(cv::Mat& matte, const cv::Mat& picture) {
   cv::Mat(matte + trust.mul(followed - matte)).copyTo(matte);
 }
 
-// 1 where a picture shows the screen, softly at edges; [H, W].
+// 1 where an image shows the screen, softly at edges; [H, W].
 cv::Mat screen_matte(const Image<float>& project, const ByteImage& luma_chroma) {
   cv::Mat matte(project.height(), project.width(), CV_32F);
   parallel_for(static_cast<size_t>(matte.rows), 16, [&](size_t begin, size_t end) {
@@ -182,10 +182,10 @@ Result<ScreenModel> learn_screen(const BackgroundSamples& samples, const std::op
   const int width = samples.images[0].width(), height = samples.images[0].height();
   const Dominant dominant = dominant_colour(samples, key, keep);
   if (dominant.share < kLeastShare) {
-    return error("no screen: {} covers {:.1f} % of the picture",
+    return error("no screen: {} covers {:.1f} % of the image",
                  key ? "the key colour's hue" : "the commonest saturated colour", 100 * dominant.share);
   }
-  // From one colour for all of the picture to one per place.
+  // From one colour for all of the image to one per place.
   Image<float> project(width, height, 3);
   const std::array<float, 3> everywhere = projection(dominant.mean);
   for (size_t i = 0; i < project.pixels().size(); ++i) project.pixels()[i] = everywhere[i % 3];
@@ -200,7 +200,7 @@ Mask find_before_screen(const ScreenModel& model, const ByteImage& luma_chroma) 
         "find_before_screen: {}x{}, the model {}x{}", luma_chroma.width(), luma_chroma.height(), model.width(),
         model.height());
   cv::Mat matte = screen_matte(model.project, luma_chroma);
-  const cv::Mat picture(matte.size(), CV_8UC3, const_cast<uint8_t*>(luma_chroma.pixels().data()));
+  const cv::Mat image(matte.size(), CV_8UC3, const_cast<uint8_t*>(luma_chroma.pixels().data()));
   cv::Mat before = matte < 0.5;
   const cv::Rect all(0, 0, matte.cols, matte.rows);
   cv::Rect around = cv::boundingRect(before & mat_from_mask(model.inside));
@@ -209,7 +209,7 @@ Mask find_before_screen(const ScreenModel& model, const ByteImage& luma_chroma) 
                       around.height + 2 * kEdgeWindow) &
              all;
     cv::Mat part = matte(around);
-    follow_luma(part, picture(around));
+    follow_luma(part, image(around));
     before = matte < 0.5;
   }
   return mask_from_mat(before);

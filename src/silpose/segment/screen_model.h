@@ -20,20 +20,20 @@ namespace silpose {
 struct ScreenModel {
   KeyColour key{};       // the screen's mean colour, as filmed
   Image<float> project;  // [H, W, 3] 1 / Y; Cr / |C|^2 and Cb / |C|^2 of the lit screen there, C = (Cr, Cb) - 128
-  Mask inside;           // [H, W] the convex hull of what is screen in any picture
-  double filled = 0;     // the part of it that is screen in any picture
+  Mask inside;           // [H, W] the convex hull of what is screen in any image
+  double filled = 0;     // the part of it that is screen in any image
 
   [[nodiscard]] int width() const { return inside.width(); }
   [[nodiscard]] int height() const { return inside.height(); }
 };
 
-// From pictures spread over the clip, which may show the subject; key and `keep` as for dominant_colour().
+// From images spread over the clip, which may show the subject; key and `keep` as for dominant_colour().
 // REQUIRES: at least one sample, equal sizes.
-// Errors: no colour (or not the key's) covers enough of the picture to be a screen.
+// Errors: no colour (or not the key's) covers enough of the image to be a screen.
 Result<ScreenModel> learn_screen(const BackgroundSamples& samples, const std::optional<KeyColour>& key,
                                  const std::optional<Mask>& keep = {});
 
-// [H, W] set where a picture [H, W, 3] in Y, Cr, Cb does not show the screen: more than half opaque at soft edges.
+// [H, W] set where an image [H, W, 3] in Y, Cr, Cb does not show the screen: more than half opaque at soft edges.
 // REQUIRES: the model's size.
 Mask find_before_screen(const ScreenModel& model, const ByteImage& luma_chroma);
 

@@ -31,7 +31,7 @@ struct Stage {
     }
     return mask;
   }
-  [[nodiscard]] ByteImage picture(int x, uint64_t seed) const {
+  [[nodiscard]] ByteImage image(int x, uint64_t seed) const {
     const Rgb skin = {190, 140, 115}, room = {175, 165, 145};
     const Mask mask = subject(x);
     ByteImage image(160, 120, 3);
@@ -54,7 +54,7 @@ struct Stage {
   }
   [[nodiscard]] BackgroundSamples samples() const {
     BackgroundSamples samples;
-    for (int i = 0; i < 12; ++i) samples.images.push_back(to_luma_chroma(picture(30 + 7 * i, 100u + i)));
+    for (int i = 0; i < 12; ++i) samples.images.push_back(to_luma_chroma(image(30 + 7 * i, 100u + i)));
     return samples;
   }
   // The worst overlap with the truth, inside the screen's hull.
@@ -62,7 +62,7 @@ struct Stage {
     const ScreenModel model = learn_screen(samples(), key).value();
     double worst = 1;
     for (const int x : {32, 60, 90}) {
-      Mask found = find_before_screen(model, to_luma_chroma(picture(x, 7u + x)));
+      Mask found = find_before_screen(model, to_luma_chroma(image(x, 7u + x)));
       for (int y = 0; y < found.height(); ++y) {
         for (size_t i = 0; i < found.row(y).size(); ++i) found.row(y)[i] &= model.inside.row(y)[i];
       }
@@ -115,8 +115,8 @@ TEST(ScreenModel, WhatIsNotKeptIsNotLookedAt) {
   // Left blue, right a larger green.
   BackgroundSamples samples;
   for (uint64_t i = 0; i < 4; ++i) {
-    ByteImage image = Stage().picture(70, i);
-    const ByteImage blue = Stage{.screen = {30, 60, 190}}.picture(70, i);
+    ByteImage image = Stage().image(70, i);
+    const ByteImage blue = Stage{.screen = {30, 60, 190}}.image(70, i);
     for (int y = 0; y < 120; ++y) {
       for (int x = 0; x < 60; ++x) {
         for (int c = 0; c < 3; ++c) image.at(x, y, c) = blue.at(x, y, c);

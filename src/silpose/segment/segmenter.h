@@ -20,16 +20,16 @@ class Segmenter {
  public:
   virtual ~Segmenter() = default;
 
-  // The observation of picture number `index` of the video, [H, W, 3] B, G, R. Indices rise from call to call and may
-  // skip. Errors: the picture has another size than those learned from; given masks that end, break or have another
+  // The observation of image number `index` of the video, [H, W, 3] B, G, R. Indices rise from call to call and may
+  // skip. Errors: the image has another size than those learned from; given masks that end, break or have another
   // size.
   virtual Result<Observation> segment(const ByteImage& image, int64_t index) = 0;
 
-  // Does the part of segment() that does not need the expected silhouette; segment() of that picture then takes less
+  // Does the part of segment() that does not need the expected silhouette; segment() of that image then takes less
   // time and gives the same result. While it runs only expect() may be called.
   virtual void prepare(const ByteImage& /*image*/, int64_t /*index*/) {}
 
-  // Where the subject is expected in the next picture, [H, W]; empty: unknown. It helps to choose among blobs
+  // Where the subject is expected in the next image, [H, W]; empty: unknown. It helps to choose among blobs
   // (choose_blob()) and never becomes foreground by itself. A network needs no such help.
   virtual void expect(Mask /*silhouette*/) {}  // NOLINT(performance-unnecessary-value-param): others keep it
 
@@ -39,16 +39,16 @@ class Segmenter {
   // Pixels of which none of its observations knows anything; null: none.
   [[nodiscard]] virtual std::shared_ptr<const Mask> ignored() const { return {}; }
 
-  // Pictures before this one serve to learn from and are not to be tracked.
+  // Images before this one serve to learn from and are not to be tracked.
   [[nodiscard]] virtual int64_t first_index() const { return 0; }
 
-  // Learns from every picture: also those that are not to be tracked must be shown to it.
+  // Learns from every image: also those that are not to be tracked must be shown to it.
   [[nodiscard]] virtual bool sees_all() const { return false; }
 
-  // Whether it can be shown earlier pictures again after restore().
+  // Whether it can be shown earlier images again after restore().
   [[nodiscard]] virtual bool can_go_back() const { return !sees_all(); }
 
-  // What it carries from picture to picture besides that: another one with the same options continues from it as this
+  // What it carries from image to image besides that: another one with the same options continues from it as this
   // one would.
   // Errors: restore() throws std::invalid_argument for what is no such state.
   [[nodiscard]] virtual std::string state() const { return {}; }

@@ -18,7 +18,7 @@ DictValue integers(const std::vector<int>& values) {
 
 constexpr int kMaxFilter = 1024;  // [guess] along one axis
 
-// Windows of a convolution along one axis: how many, and what has to be added before and after the picture.
+// Windows of a convolution along one axis: how many, and what has to be added before and after the image.
 struct Windows {
   int count = 0, before = 0, after = 0;
 };

@@ -1,5 +1,5 @@
 // TfliteLayers: the operators of a TensorFlow Lite file as layers of OpenCV's dnn module, one operator at a time.
-// Pictures inside are [1, C, H, W] where the file has [1, H, W, C].
+// Images inside are [1, C, H, W] where the file has [1, H, W, C].
 // Threads: one thread per object.
 #pragma once
 

@@ -50,7 +50,7 @@ Result<TfliteNetwork> TfliteNetwork::load(const std::filesystem::path& path, con
 Result<TfliteNetwork> TfliteNetwork::build(const TfliteFile& file, const std::vector<std::string>& outputs) {
   if (file.inputs.size() != 1) return error("has {} inputs, one is known", file.inputs.size());
   const std::vector<int>& input = file.tensors[static_cast<size_t>(file.inputs[0])].shape;
-  if (input.size() != 4 || input[0] != 1) return error("its input is not one picture");
+  if (input.size() != 4 || input[0] != 1) return error("its input is not one image");
   std::vector<int> wanted;
   for (const std::string& name : outputs) {
     const auto found = std::ranges::find_if(

@@ -1,5 +1,5 @@
 // TfliteNetwork: runs a network from a TensorFlow Lite file on OpenCV's dnn layers.
-// Based on: tflite_file.h. Layers are built one by one; pictures inside are [C, H, W] where the file has [H, W, C].
+// Based on: tflite_file.h. Layers are built one by one; images inside are [C, H, W] where the file has [H, W, C].
 // Threads: one thread per network (it keeps its buffers); works on all cores itself.
 #pragma once
 

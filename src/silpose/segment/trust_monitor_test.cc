@@ -47,7 +47,7 @@ TEST(TrustMonitor, AJumpIsDoubtedUntilItLasts) {
   EXPECT_TRUE(monitor.judge(square(10)).trust.area_jumped);
   EXPECT_FALSE(monitor.judge(square(22)).trust.area_jumped);
   (void)monitor.judge(Mask(100, 80));
-  EXPECT_FALSE(monitor.judge(square(20)).trust.area_jumped) << "an empty picture does not move the median";
+  EXPECT_FALSE(monitor.judge(square(20)).trust.area_jumped) << "an empty image does not move the median";
   int doubted = 0;
   for (int i = 0; i < 20; ++i) doubted += monitor.judge(square(30)).trust.area_jumped ? 1 : 0;
   EXPECT_GE(doubted, 5);

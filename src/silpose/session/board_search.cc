@@ -19,7 +19,7 @@ std::string board_text(const Board& board) {
   return fmt::format("chessboard of {}x{} inner corners", board.columns, board.rows);
 }
 
-// Finds the board in a batch of frames, in all of their pictures at once; thoroughly where it lies on the floor.
+// Finds the board in a batch of frames, in all of their images at once; thoroughly where it lies on the floor.
 void search_batch(const Board& board, const std::vector<Frame>& batch, std::optional<int64_t> floor_frame,
                   std::vector<CameraSightings>& cameras) {
   const size_t num_cameras = cameras.size();
@@ -79,7 +79,7 @@ Result<BoardSearch> search_board(const Board& board, const std::vector<std::stri
 
   for (size_t c = 0; c < videos.size(); ++c) {
     if (!search.cameras[c].sightings.empty()) continue;
-    return error("{}: no {} in any of {} frames; it must be whole in the picture, with a white margin", videos[c],
+    return error("{}: no {} in any of {} frames; it must be whole in the image, with a white margin", videos[c],
                  board_text(board), search.num_searched);
   }
   if (!floor_s) return search;

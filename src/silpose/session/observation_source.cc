@@ -210,7 +210,7 @@ std::vector<std::string> ObservationSource::warnings() const {
   }
   if (2 * num_cut_ > num_seen_) {
     all.push_back(
-        fmt::format("{}: the subject reaches the edge of the picture in {:.0f} % of the masks; a whole body is "
+        fmt::format("{}: the subject reaches the edge of the image in {:.0f} % of the masks; a whole body is "
                     "assumed, and what lies outside is guessed",
                     video_.name(), 100.0 * static_cast<double>(num_cut_) / static_cast<double>(num_seen_)));
   }

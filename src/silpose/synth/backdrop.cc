@@ -37,7 +37,7 @@ double texture(double x, double y, double size, uint64_t seed) {
          0.2 * (value_noise(9.7 * x / size, 9.7 * y / size, seed + 2) - 0.5);
 }
 
-// Pictures that hang on the wall.
+// Images that hang on the wall.
 struct Poster {
   double x, y, half_width, half_height;  // metres on the wall
   Vector3d colour;                       // B, G, R in 0 to 1
@@ -105,7 +105,7 @@ ByteImage draw_backdrop(const PinholeCamera& camera, Backdrop backdrop, double w
   ahead = ahead.norm() > 1e-6 ? ahead.normalized() : -Vector3d::UnitZ();
   const Vector3d right = ahead.cross(Vector3d::UnitY());
 
-  ByteImage picture(camera.width, camera.height, 3);
+  ByteImage image(camera.width, camera.height, 3);
   parallel_for(static_cast<size_t>(camera.height), 16, [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row) {
       for (int column = 0; column < camera.width; ++column) {
@@ -122,13 +122,13 @@ ByteImage draw_backdrop(const PinholeCamera& camera, Backdrop backdrop, double w
           colour = is_floor ? floor_colour(x.x(), x.z(), seed) : wall_colour(along, x.y(), posters, seed);
         }
         for (int c = 0; c < 3; ++c) {
-          picture.at(column, static_cast<int>(row), c) =
+          image.at(column, static_cast<int>(row), c) =
               static_cast<uint8_t>(std::lround(std::clamp(colour[c] * 255, 0.0, 255.0)));
         }
       }
     }
   });
-  return picture;
+  return image;
 }
 
 }  // namespace silpose

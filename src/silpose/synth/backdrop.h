@@ -17,7 +17,7 @@ enum class Backdrop { kTextured, kGreen };
 // "textured" or "green". Errors: anything else.
 Result<Backdrop> parse_backdrop(const std::string& text);
 
-// The picture [H, W, 3] of the empty place. The wall stands upright `wall_distance_m` in front of the camera.
+// The image [H, W, 3] of the empty place. The wall stands upright `wall_distance_m` in front of the camera.
 ByteImage draw_backdrop(const PinholeCamera& camera, Backdrop backdrop, double wall_distance_m, uint64_t seed);
 
 }  // namespace silpose

@@ -13,12 +13,12 @@ namespace {
 constexpr double kWallBehind = 3;  // m behind the middle of the path
 
 // One stream per row, so that rows may be drawn by any thread.
-void add_sensor_noise(ByteImage& picture, double sd, uint64_t seed, uint64_t camera_idx, uint64_t frame) {
+void add_sensor_noise(ByteImage& image, double sd, uint64_t seed, uint64_t camera_idx, uint64_t frame) {
   if (sd <= 0) return;
-  parallel_for(static_cast<size_t>(picture.height()), 32, [&](size_t begin, size_t end) {
+  parallel_for(static_cast<size_t>(image.height()), 32, [&](size_t begin, size_t end) {
     for (size_t y = begin; y < end; ++y) {
       Rng rng(seed + 1 + camera_idx, frame + 1, y);
-      for (uint8_t& value : picture.row(static_cast<int>(y))) {
+      for (uint8_t& value : image.row(static_cast<int>(y))) {
         value = static_cast<uint8_t>(std::lround(std::clamp(value + sd * rng.normal(), 0.0, 255.0)));
       }
     }
@@ -37,18 +37,18 @@ ColourScene::ColourScene(const SyntheticSequence& sequence, int camera_idx, cons
 }
 
 ByteImage ColourScene::draw(int frame) const {
-  ByteImage picture = backdrop_;
+  ByteImage image = backdrop_;
   const std::span<const double> pose = pose_of_frame(*sequence_, frame);
   if (!pose.empty()) {
     const std::vector<Eigen::Vector3f> vertices = skin_vertices(*sequence_->body, pose);
     Lighting lighting;
     lighting.shadow = options_.shadow;
     draw_shaded(sequence_->cameras[static_cast<size_t>(camera_idx_)], vertices, sequence_->body->rest.faces, colours_,
-                lighting, picture);
+                lighting, image);
   }
-  add_sensor_noise(picture, options_.noise_sd, options_.seed, static_cast<uint64_t>(camera_idx_),
+  add_sensor_noise(image, options_.noise_sd, options_.seed, static_cast<uint64_t>(camera_idx_),
                    static_cast<uint64_t>(frame));
-  return picture;
+  return image;
 }
 
 }  // namespace silpose

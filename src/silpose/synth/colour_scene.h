@@ -1,4 +1,4 @@
-// ColourScene: colour pictures of a SyntheticSequence as a camera would take them: a dressed, shaded body over a
+// ColourScene: colour images of a SyntheticSequence as a camera would take them: a dressed, shaded body over a
 // backdrop, its shadow on the floor, sensor noise that differs in every frame. Drawn frame by frame, when asked.
 // Threads: const functions are safe; a frame is the same whichever thread draws it, and in whatever order.
 #pragma once

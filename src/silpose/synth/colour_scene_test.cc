@@ -42,13 +42,13 @@ TEST(ColourScene, ShowsTheBodyWhereTheMaskIs) {
   const SyntheticSequence sequence = make_test_scene(6, 2);
   const ColourScene scene(sequence, 0, {.noise_sd = 0, .shadow = 0});
   EXPECT_EQ(scene.draw(0), scene.backdrop());
-  const ByteImage picture = scene.draw(4);
+  const ByteImage image = scene.draw(4);
   const Mask mask = true_mask(sequence, 0, 4);
   int64_t inside = 0, outside = 0;
   for (int y = 0; y < mask.height(); ++y) {
     for (int x = 0; x < mask.width(); ++x) {
       bool differs = false;
-      for (int c = 0; c < 3; ++c) differs |= std::abs(picture.at(x, y, c) - scene.backdrop().at(x, y, c)) > 8;
+      for (int c = 0; c < 3; ++c) differs |= std::abs(image.at(x, y, c) - scene.backdrop().at(x, y, c)) > 8;
       (mask.get(x, y) ? inside : outside) += differs;
     }
   }

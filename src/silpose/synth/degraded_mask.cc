@@ -37,8 +37,8 @@ Mask draw_faces(const PinholeCamera& camera, std::span<const Vector3f> vertices,
   return mask;
 }
 
-// The height of the upright body in the picture, at its distance in that pose. Pixels.
-double height_in_picture(const SyntheticSequence& sequence, const PinholeCamera& camera, std::span<const double> pose) {
+// The height of the upright body in the image, at its distance in that pose. Pixels.
+double height_in_image(const SyntheticSequence& sequence, const PinholeCamera& camera, std::span<const double> pose) {
   Vector3f lower = Vector3f::Constant(1e9F), upper = Vector3f::Constant(-1e9F);
   for (const Vector3f& vertex : sequence.body->rest.vertices) {
     lower = lower.cwiseMin(vertex);
@@ -182,7 +182,7 @@ std::function<Mask(int)> hole_fault(const SyntheticSequence& sequence, int camer
     const PinholeCamera& camera = sequence.cameras[static_cast<size_t>(camera_idx)];
     const std::span<const double> pose = pose_of_frame(sequence, frame);
     const std::vector<Vector3f> vertices = skin_vertices(*sequence.body, pose);
-    const double height = height_in_picture(sequence, camera, pose), time = frame / sequence.fps;
+    const double height = height_in_image(sequence, camera, pose), time = frame / sequence.fps;
     const Mask truth = true_mask(sequence, camera_idx, frame);
     Mask mask = truth;
     for (const Spell& spell : spells) {
@@ -237,7 +237,7 @@ Result<size_t> find_levels(const SyntheticSequence& sequence, int camera_idx, co
     for (size_t i = std::max(begin, static_cast<size_t>(sequence.lead_in)); i < end; ++i) {
       const int frame = static_cast<int>(i);
       const Mask truth = true_mask(sequence, camera_idx, frame);
-      const double height = height_in_picture(sequence, camera, pose_of_frame(sequence, frame));
+      const double height = height_in_image(sequence, camera, pose_of_frame(sequence, frame));
       frames[i].area = truth.count();
       for (const OutlineNoise::Change& change : outline.changes(truth, height, frame / sequence.fps)) {
         ++(truth.get(change.x, change.y) ? frames[i].lost : frames[i].added)[level_of(change.amplitude)];
@@ -261,7 +261,7 @@ std::function<Mask(int)> edge_fault(const SyntheticSequence& sequence, int camer
   return [&sequence, camera_idx, outline, levels](int frame) {
     const Mask truth = true_mask(sequence, camera_idx, frame);
     const double height =
-        height_in_picture(sequence, sequence.cameras[static_cast<size_t>(camera_idx)], pose_of_frame(sequence, frame));
+        height_in_image(sequence, sequence.cameras[static_cast<size_t>(camera_idx)], pose_of_frame(sequence, frame));
     Mask mask = truth;
     for (const OutlineNoise::Change& change : outline.changes(truth, height, frame / sequence.fps)) {
       if (level_of(change.amplitude) < levels) mask.set(change.x, change.y, !truth.get(change.x, change.y));

@@ -16,7 +16,7 @@ namespace silpose {
 
 enum class MaskFault {
   kNone,
-  kShadow,  // the body's whole shadow on the floor is mistaken for the body; it falls as in colour pictures
+  kShadow,  // the body's whole shadow on the floor is mistaken for the body; it falls as in colour images
   kEdge,    // the outline wanders about the true one
   kLimb,    // a limb's segment (a joint's share of the mesh) is not seen for 0.3 to 1 s at a time
   kHole,    // up to five blobs inside are missing; they stay on the body for 0.3 to 1.2 s each

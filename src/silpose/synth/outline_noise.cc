@@ -19,7 +19,7 @@ struct OutlinePoint {
   double normal_x = 0, normal_y = 0;  // outwards, unit
 };
 
-// Set pixels next to one that is not; where the picture ends is no outline.
+// Set pixels next to one that is not; where the image ends is no outline.
 std::vector<OutlinePoint> find_outline(const Mask& mask, const Box& box, int radius) {
   const auto is_set = [&](int x, int y) {
     return x < 0 || y < 0 || x >= mask.width() || y >= mask.height() || mask.get(x, y);
@@ -117,7 +117,7 @@ std::vector<OutlineNoise::Change> OutlineNoise::changes(const Mask& truth, doubl
   if (body.empty()) return {};
   const std::vector<OutlinePoint> points =
       find_outline(truth, body, std::max(2, static_cast<int>(std::lround(kNormalRadius * height_px))));
-  if (points.empty()) return {};  // the body fills the picture
+  if (points.empty()) return {};  // the body fills the image
 
   double middle_x = 0, middle_y = 0;
   for (const OutlinePoint& point : points) middle_x += point.x, middle_y += point.y;

@@ -11,7 +11,7 @@ namespace silpose {
 namespace {
 
 constexpr double kFarthest = 200, kBackOff = 1.05;  // m, factor per try
-constexpr double kMargin = 0.01;                    // of the picture's size, free on every side
+constexpr double kMargin = 0.01;                    // of the image's size, free on every side
 
 struct Bounds {
   Eigen::Vector3d lower = Eigen::Vector3d::Constant(1e9), upper = Eigen::Vector3d::Constant(-1e9);
@@ -60,7 +60,7 @@ Result<SyntheticSequence> make_sequence(std::shared_ptr<const BodyModel> body, c
                                         const SceneOptions& options) {
   check(body != nullptr, "make_sequence: no body");
   check(options.width > 0 && options.height > 0 && options.focal_px > 0 && options.distance_m > 0,
-        "make_sequence: picture {}x{}, focal length {} px, distance {} m", options.width, options.height,
+        "make_sequence: image {}x{}, focal length {} px, distance {} m", options.width, options.height,
         options.focal_px, options.distance_m);
   check(options.lead_in >= 0, "make_sequence: lead-in of {} frames", options.lead_in);
   check(!options.views.empty(), "make_sequence: no view");
@@ -100,7 +100,7 @@ Result<SyntheticSequence> make_sequence(std::shared_ptr<const BodyModel> body, c
     }
     if (all_inside) return sequence;
   }
-  return error("the motion does not fit into a picture of {}x{} pixels, focal length {} px, from {} m away",
+  return error("the motion does not fit into an image of {}x{} pixels, focal length {} px, from {} m away",
                options.width, options.height, options.focal_px, kFarthest);
 }
 

@@ -1,5 +1,5 @@
 // SyntheticSequence: a moving body in front of one or several cameras, and its ground truth: masks and joints.
-// Pictures of it are drawn in colour_scene.h; files are written in sequence_files.h.
+// Images of it are drawn in colour_scene.h; files are written in sequence_files.h.
 // Threads: a value and functions without state.
 #pragma once
 
@@ -47,7 +47,7 @@ struct SyntheticSequence {
 };
 
 // Cameras look level at the middle of the box around all that is seen of the body. They are farther away than requested
-// where some frame would not fit into the picture. Errors: no frame; a body that does not fit from 200 m away; throws
+// where some frame would not fit into the image. Errors: no frame; a body that does not fit from 200 m away; throws
 // std::invalid_argument for sizes that are not positive, no view, or two of one name.
 Result<SyntheticSequence> make_sequence(std::shared_ptr<const BodyModel> body, const SyntheticMotion& motion,
                                         const SceneOptions& options = {});

@@ -40,7 +40,7 @@ TEST(Scene, CamerasStandLevelAroundTheMiddleOfThePath) {
   EXPECT_NEAR(front.x(), 0.5, 1e-5);
   EXPECT_NEAR(front.z(), 5.5, 1e-5);
   EXPECT_GT(side.x(), 5);
-  // The subject's left (+X) is at the right of a picture of its front.
+  // The subject's left (+X) is at the right of an image of its front.
   const auto left = sequence.cameras[0].project({0.9, 0.7, 0}), right = sequence.cameras[0].project({0.1, 0.7, 0});
   EXPECT_GT(left->x(), right->x());
 }

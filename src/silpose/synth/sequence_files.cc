@@ -56,7 +56,7 @@ Result<std::vector<Outputs>> open_outputs(const std::filesystem::path& directory
 // Frames [begin, end) of one camera.
 Result<void> write_frames(const SyntheticSequence& sequence, int camera_idx, Outputs& output, int begin, int end) {
   const auto count = static_cast<size_t>(end - begin);
-  std::vector<ByteImage> pictures(count);
+  std::vector<ByteImage> images(count);
   std::vector<std::optional<Error>> failures(count);
   parallel_for(count, 1, [&](size_t first, size_t last) {
     for (size_t i = first; i < last; ++i) {
@@ -65,15 +65,15 @@ Result<void> write_frames(const SyntheticSequence& sequence, int camera_idx, Out
           output.degraded != nullptr ? output.degraded->draw(frame) : true_mask(sequence, camera_idx, frame);
       const Result<void> written = write_mask(output.masks / fmt::format("{:06}.png", frame), mask);
       if (!written) failures[i] = written.error();
-      if (output.scene) pictures[i] = output.scene->draw(frame);
+      if (output.scene) images[i] = output.scene->draw(frame);
     }
   });
   for (const std::optional<Error>& failure : failures) {
     if (failure) return *failure;
   }
-  for (const ByteImage& picture : pictures) {
+  for (const ByteImage& image : images) {
     if (!output.video) break;
-    if (const Result<void> written = output.video->write(picture); !written) return written.failure();
+    if (const Result<void> written = output.video->write(image); !written) return written.failure();
   }
   return {};
 }

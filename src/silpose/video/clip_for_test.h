@@ -29,7 +29,7 @@ struct ClipForTest {
   AVRational pixel_aspect = {1, 1};
   AVColorSpace colour_space = AVCOL_SPC_UNSPECIFIED;
   AVColorTransferCharacteristic transfer = AVCOL_TRC_UNSPECIFIED;
-  bool is_interlaced = false, has_sound = false, has_pictures = true;
+  bool is_interlaced = false, has_sound = false, has_images = true;
   std::optional<std::array<int32_t, 9>> display_matrix;
   std::vector<std::pair<std::string, std::string>> metadata;  // of the file, as QuickTime's keys
 };
@@ -50,8 +50,8 @@ class ClipWriterForTest {
   ClipWriterForTest(const ClipWriterForTest&) = delete;
   ClipWriterForTest& operator=(const ClipWriterForTest&) = delete;
 
-  void add_pictures(int width, int height) {
-    pictures_ = add(clip_.codec, [&](AVCodecContext& encoder) {
+  void add_images(int width, int height) {
+    images_ = add(clip_.codec, [&](AVCodecContext& encoder) {
       encoder.width = width;
       encoder.height = height;
       encoder.pix_fmt = av_get_pix_fmt(clip_.pixel_format.c_str());
@@ -64,7 +64,7 @@ class ClipWriterForTest {
       encoder.color_range = AVCOL_RANGE_MPEG;
       if (clip_.is_interlaced) encoder.flags |= AV_CODEC_FLAG_INTERLACED_DCT | AV_CODEC_FLAG_INTERLACED_ME;
     });
-    AVStream& stream = *pictures_.stream;
+    AVStream& stream = *images_.stream;
     stream.sample_aspect_ratio = clip_.pixel_aspect;
     if (clip_.times_ms.empty()) stream.avg_frame_rate = {clip_.rate, 1};
     if (clip_.display_matrix) {
@@ -92,8 +92,8 @@ class ClipWriterForTest {
     av_dict_free(&muxing);
   }
 
-  void write_pictures(std::span<const ByteImage> pictures) {
-    AVCodecContext& encoder = *pictures_.encoder;
+  void write_images(std::span<const ByteImage> images) {
+    AVCodecContext& encoder = *images_.encoder;
     const FrameHandle frame(av_frame_alloc());
     frame->format = encoder.pix_fmt;
     frame->width = encoder.width;
@@ -103,16 +103,16 @@ class ClipWriterForTest {
                                              encoder.height, encoder.pix_fmt, SWS_BICUBIC, nullptr, nullptr, nullptr));
     sws_setColorspaceDetails(scaler.get(), sws_getCoefficients(SWS_CS_DEFAULT), 1,
                              sws_getCoefficients(clip_.colour_space), 0, 0, 1 << 16, 1 << 16);
-    for (size_t i = 0; i < pictures.size(); ++i) {
+    for (size_t i = 0; i < images.size(); ++i) {
       must(av_frame_make_writable(frame.get()));
-      const uint8_t* const rows[] = {pictures[i].pixels().data()};
+      const uint8_t* const rows[] = {images[i].pixels().data()};
       const int stride[] = {3 * encoder.width};
       sws_scale(scaler.get(), rows, stride, 0, encoder.height, frame->data, frame->linesize);
       frame->pts = clip_.times_ms.empty() ? static_cast<int64_t>(i) : clip_.times_ms.at(i);
       set_interlaced(*frame, clip_.is_interlaced);
-      encode(pictures_, frame.get());
+      encode(images_, frame.get());
     }
-    encode(pictures_, nullptr);
+    encode(images_, nullptr);
   }
 
   // One second.
@@ -171,18 +171,18 @@ class ClipWriterForTest {
   const std::filesystem::path& path_;
   const ClipForTest& clip_;
   AVFormatContext* output_ = nullptr;
-  Track pictures_, sound_;
+  Track images_, sound_;
   const PacketHandle packet_{av_packet_alloc()};
 };
 
-// Writes `pictures` [H, W, 3] as they are to be stored.
-inline void write_clip_for_test(const std::filesystem::path& path, std::span<const ByteImage> pictures,
+// Writes `images` [H, W, 3] as they are to be stored.
+inline void write_clip_for_test(const std::filesystem::path& path, std::span<const ByteImage> images,
                                 const ClipForTest& clip) {
   ClipWriterForTest writer(path, clip);
-  if (clip.has_pictures) writer.add_pictures(pictures[0].width(), pictures[0].height());
+  if (clip.has_images) writer.add_images(images[0].width(), images[0].height());
   if (clip.has_sound) writer.add_sound();
   writer.write_header();
-  if (clip.has_pictures) writer.write_pictures(pictures);
+  if (clip.has_images) writer.write_images(images);
   if (clip.has_sound) writer.write_silence();
   writer.finish();
 }

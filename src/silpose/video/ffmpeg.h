@@ -38,7 +38,7 @@ std::string ffmpeg_path(const std::string& path);
 // Keeps FFmpeg and its codecs from printing.
 void silence_ffmpeg();
 
-// Whether a picture is made of two fields, and whether its upper line is of the earlier one.
+// Whether an image is made of two fields, and whether its upper line is of the earlier one.
 [[nodiscard]] bool is_interlaced(const AVFrame& frame);
 [[nodiscard]] bool is_top_field_first(const AVFrame& frame);
 // Of two fields, the upper line of the earlier one, or of none.

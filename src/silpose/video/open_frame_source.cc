@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "silpose/image/image_file.h"
-#include "silpose/image/picture_list.h"
+#include "silpose/image/image_list.h"
 #include "silpose/video/ffmpeg.h"
 #include "silpose/video/video_file.h"
 
@@ -55,12 +55,12 @@ class LiveCamera : public FrameSource {
   mutable cv::VideoCapture capture_;
 };
 
-class PictureSource : public FrameSource {
+class ImageSource : public FrameSource {
  public:
-  PictureSource(std::string name, PictureList pictures, std::optional<double> focal_mm35)
+  ImageSource(std::string name, ImageList images, std::optional<double> focal_mm35)
       : name_(std::move(name)),
-        paths_(std::move(pictures.paths)),
-        numbers_(std::move(pictures.numbers)),
+        paths_(std::move(images.paths)),
+        numbers_(std::move(images.numbers)),
         focal_mm35_(focal_mm35) {}
 
   [[nodiscard]] const std::string& name() const override { return name_; }
@@ -82,7 +82,7 @@ class PictureSource : public FrameSource {
   std::string name_;
   std::vector<fs::path> paths_;
   std::vector<int64_t> numbers_;
-  std::optional<double> focal_mm35_;  // of the first picture
+  std::optional<double> focal_mm35_;  // of the first image
   size_t next_ = 0;
 };
 
@@ -90,9 +90,9 @@ class PictureSource : public FrameSource {
 std::optional<double> focal_mm35_of_jpeg(const fs::path& path) {
   const fs::path extension = path.extension();
   if (extension != ".jpg" && extension != ".jpeg" && extension != ".JPG" && extension != ".JPEG") return {};
-  const auto picture = open_video_file(path.string());
-  if (!picture || !(*picture)->next()) return {};
-  return (*picture)->focal_mm35();
+  const auto image = open_video_file(path.string());
+  if (!image || !(*image)->next()) return {};
+  return (*image)->focal_mm35();
 }
 
 // FFmpeg takes some text files for videos (it draws them).
@@ -108,11 +108,11 @@ Result<std::unique_ptr<FrameSource>> open_camera(const std::string& input, int d
   return std::unique_ptr<FrameSource>(std::move(source));
 }
 
-Result<std::unique_ptr<FrameSource>> open_pictures(const std::string& input) {
-  Result<PictureList> pictures = list_pictures(input);
-  if (!pictures) return pictures.failure();
-  const std::optional<double> focal_mm35 = focal_mm35_of_jpeg(pictures->paths.front());
-  return std::unique_ptr<FrameSource>(std::make_unique<PictureSource>(input, std::move(*pictures), focal_mm35));
+Result<std::unique_ptr<FrameSource>> open_images(const std::string& input) {
+  Result<ImageList> images = list_images(input);
+  if (!images) return images.failure();
+  const std::optional<double> focal_mm35 = focal_mm35_of_jpeg(images->paths.front());
+  return std::unique_ptr<FrameSource>(std::make_unique<ImageSource>(input, std::move(*images), focal_mm35));
 }
 
 }  // namespace
@@ -128,7 +128,7 @@ Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& input)
   }
   const fs::path path(input);
   std::error_code code;
-  if (!fs::exists(path, code) || fs::is_directory(path, code) || is_picture_name(path)) return open_pictures(input);
+  if (!fs::exists(path, code) || fs::is_directory(path, code) || is_image_name(path)) return open_images(input);
   std::ifstream stream(path, std::ios::binary);
   std::string start(4096, '\0');
   stream.read(start.data(), static_cast<std::streamsize>(start.size()));

@@ -10,7 +10,7 @@
 
 namespace silpose {
 
-// Errors: missing, empty, not a video, no picture in it, a gap in a numbered sequence.
+// Errors: missing, empty, not a video, no image in it, a gap in a numbered sequence.
 Result<std::unique_ptr<FrameSource>> open_frame_source(const std::string& input);
 
 }  // namespace silpose

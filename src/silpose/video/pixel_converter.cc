@@ -39,7 +39,7 @@ Result<cv::Mat> PixelConverter::convert(const AVFrame& frame) {
   }
   if (sws_scale(scaler_.get(), frame.data, frame.linesize, 0, frame.height, converted_->data, converted_->linesize) <
       0) {
-    return error("a picture cannot be converted");
+    return error("an image cannot be converted");
   }
   if (kind.hdr) {
     toned_.create(kind.height, kind.width, CV_8UC3);
@@ -72,11 +72,11 @@ Result<void> PixelConverter::prepare(const Kind& kind) {
   converted_->height = kind.height;
   // Not straight into an image: the scaler writes past a row's end unless rows are aligned.
   if (av_frame_get_buffer(converted_.get(), 0) < 0) {
-    return error("no memory for a picture of {}x{}", kind.width, kind.height);
+    return error("no memory for an image of {}x{}", kind.width, kind.height);
   }
   scaler_.reset(sws_getContext(kind.width, kind.height, static_cast<AVPixelFormat>(kind.format), kind.width,
                                kind.height, target, SWS_BICUBIC, nullptr, nullptr, nullptr));
-  if (!scaler_) return error("pictures of an unknown kind");
+  if (!scaler_) return error("images of an unknown kind");
   int *of_source = nullptr, *of_target = nullptr, source_range = 0, range = 0, brightness = 0, contrast = 0,
       saturation = 0;
   if (sws_getColorspaceDetails(scaler_.get(), &of_source, &source_range, &of_target, &range, &brightness, &contrast,

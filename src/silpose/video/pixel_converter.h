@@ -1,4 +1,4 @@
-// PixelConverter: a decoded picture, of any depth and colour, to 8-bit B, G, R by its own colour matrix and range; HDR
+// PixelConverter: a decoded image, of any depth and colour, to 8-bit B, G, R by its own colour matrix and range; HDR
 // as a screen of standard range shows it (tone_map.h).
 // Based on: FFmpeg's libswscale.
 // Threads: one thread per converter.
@@ -13,7 +13,7 @@
 
 namespace silpose {
 
-// How an HDR picture is coded; nothing: it is of standard range.
+// How an HDR image is coded; nothing: it is of standard range.
 std::optional<HdrTransfer> hdr_transfer_of(const AVFrame& frame);
 
 class PixelConverter {

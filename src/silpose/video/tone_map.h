@@ -1,4 +1,4 @@
-// HDR pictures (ITU-R BT.2100: wide primaries; hybrid log-gamma, HLG, or perceptual quantizer, PQ) as a screen of
+// HDR images (ITU-R BT.2100: wide primaries; hybrid log-gamma, HLG, or perceptual quantizer, PQ) as a screen of
 // standard range shows them: 8-bit sRGB. A diffuse white of 203 cd/m2 is the standard white; up to about half of that
 // colours are as they were, above they roll off towards 1,000 cd/m2, which comes out as white. Colours keep their hue;
 // what the smaller gamut lacks is cut.
@@ -27,7 +27,7 @@ class ToneMap {
 
   explicit ToneMap(HdrTransfer transfer);
 
-  // A row of a picture: [W] of each channel, of kBits, to B, G, R [3 W].
+  // A row of an image: [W] of each channel, of kBits, to B, G, R [3 W].
   void apply(std::span<const uint16_t> red, std::span<const uint16_t> green, std::span<const uint16_t> blue,
              std::span<uint8_t> shown) const;
 

@@ -12,25 +12,25 @@
 namespace silpose {
 
 struct Video::Impl {
-  // A source, and its next picture where it was read ahead: to know its size and its time. Shared by this video and
+  // A source, and its next image where it was read ahead: to know its size and its time. Shared by this video and
   // those of this camera alone.
   struct Camera {
     std::unique_ptr<FrameSource> source;
-    std::optional<TimedImage> picture;
+    std::optional<TimedImage> image;
     int width = 0, height = 0;
-    double fps = 0;  // 0: unknown. These two as they were after the first picture: a rewound source may forget them.
+    double fps = 0;  // 0: unknown. These two as they were after the first image: a rewound source may forget them.
     int64_t hint = 0;
     int64_t num_read = 0;
 
-    // Reads the next picture. False: there is none.
+    // Reads the next image. False: there is none.
     Result<bool> read() {
       Result<std::optional<TimedImage>> next = source->next();
       if (!next) return next.failure();
-      picture = std::move(*next);
-      if (!picture) return false;
+      image = std::move(*next);
+      if (!image) return false;
       ++num_read;
-      if (picture->image.channels() != 3) {
-        return error("{}: an image of {} channels, not of 3", source->name(), picture->image.channels());
+      if (image->image.channels() != 3) {
+        return error("{}: an image of {} channels, not of 3", source->name(), image->image.channels());
       }
       const std::span<const int64_t> numbers = source->numbers();
       if (!numbers.empty() && std::ssize(numbers) < num_read) {
@@ -38,10 +38,10 @@ struct Video::Impl {
       }
       return true;
     }
-    // Nothing to do where the first picture was only read ahead: a file need not be opened again.
+    // Nothing to do where the first image was only read ahead: a file need not be opened again.
     Result<void> rewind() {
-      if (num_read == 1 && picture) return {};
-      picture.reset();
+      if (num_read == 1 && image) return {};
+      image.reset();
       num_read = 0;
       return source->rewind();
     }
@@ -52,25 +52,25 @@ struct Video::Impl {
   bool fps_assumed = false, live = false, ended = false, truncated = false;
   int64_t hint = 0, num_given = 0, last_ns = 0, num_mistimed = 0;
   std::vector<int64_t> numbers;  // of the frames; empty: counted from 0
-  Stopwatch since_start;         // the time of live pictures
+  Stopwatch since_start;         // the time of live images
 
   static Result<std::shared_ptr<Camera>> begin(std::unique_ptr<FrameSource> source) {
-    auto camera = std::make_shared<Camera>(Camera{.source = std::move(source), .picture = {}});
+    auto camera = std::make_shared<Camera>(Camera{.source = std::move(source), .image = {}});
     const Result<bool> first = camera->read();
     if (!first) return first.failure();
     if (!*first) return error("{}: not a video, or no frame in it can be decoded", camera->source->name());
-    camera->width = camera->picture->image.width();
-    camera->height = camera->picture->image.height();
+    camera->width = camera->image->image.width();
+    camera->height = camera->image->image.height();
     camera->fps = camera->source->fps();
     camera->hint = camera->source->num_frames_hint();
     return camera;
   }
 
-  // Reads what belongs together: cameras whose picture is older than another's advance to their next, so that a picture
+  // Reads what belongs together: cameras whose image is older than another's advance to their next, so that an image
   // that one of them dropped is left out for all. False: one of them has ended.
   Result<bool> read_instant() {
     for (const auto& camera : cameras) {
-      if (camera->picture) continue;
+      if (camera->image) continue;
       const Result<bool> read = camera->read();
       if (!read || !*read) return end_with(*camera, read);
     }
@@ -78,8 +78,8 @@ struct Video::Impl {
     for (size_t i = 0; i < cameras.size();) {
       Camera& camera = *cameras[i++];
       const auto is_after = [&](const std::shared_ptr<Camera>& other) {
-        return other->picture->time_ns && camera.picture->time_ns &&
-               *other->picture->time_ns - *camera.picture->time_ns > half_interval;
+        return other->image->time_ns && camera.image->time_ns &&
+               *other->image->time_ns - *camera.image->time_ns > half_interval;
       };
       if (std::ranges::none_of(cameras, is_after)) continue;
       const Result<bool> read = camera.read();
@@ -94,20 +94,20 @@ struct Video::Impl {
     return read;
   }
 
-  // The picture's own time, or where it has none, or one that does not grow, one frame's after the last.
+  // The image's own time, or where it has none, or one that does not grow, one frame's after the last.
   int64_t time_of(const Camera& camera, int64_t index) {
     if (live) {
       if (num_given == 0) since_start.restart();
       return num_given == 0 ? 0 : std::llround(since_start.seconds() * 1e9);
     }
     if (!camera.source->has_times()) return std::llround(static_cast<double>(index) * 1e9 / fps);
-    const std::optional<int64_t> own = camera.picture->time_ns;
+    const std::optional<int64_t> own = camera.image->time_ns;
     if (own && (num_given == 0 || *own > last_ns)) return *own;
     ++num_mistimed;
     return last_ns + std::llround(1e9 / fps);
   }
 
-  // Numbers that all cameras' pictures share, as far as the shortest goes.
+  // Numbers that all cameras' images share, as far as the shortest goes.
   void take_numbers() {
     const std::span<const int64_t> first = cameras[0]->source->numbers();
     numbers.assign(first.begin(), first.end());
@@ -171,13 +171,13 @@ Result<std::optional<Frame>> Video::next() {
   const int64_t index = impl.index_of(impl.cameras[0]->num_read - 1);
   Frame frame{.index = index, .time_ns = impl.time_of(*impl.cameras[0], index), .images = {}};
   for (const auto& camera : impl.cameras) {
-    ByteImage& image = camera->picture->image;
+    ByteImage& image = camera->image->image;
     if (image.width() != camera->width || image.height() != camera->height) {
       return error("{}: frame {} is {}x{}, those before it {}x{}", camera->source->name(), frame.index, image.width(),
                    image.height(), camera->width, camera->height);
     }
     frame.images.push_back(std::move(image));
-    camera->picture.reset();
+    camera->image.reset();
   }
   impl.last_ns = frame.time_ns;
   ++impl.num_given;

@@ -1,4 +1,4 @@
-// Video in and out: a file, a directory of pictures, a printf pattern or a camera, read as Frames; H.264 written.
+// Video in and out: a file, a directory of images, a printf pattern or a camera, read as Frames; H.264 written.
 // Based on: FFmpeg for files, OpenCV's videoio for live cameras.
 // Threads: one thread per VideoWriter, and per Video with those that its alone() gave.
 #pragma once
@@ -38,10 +38,10 @@ class Video {
   [[nodiscard]] bool is_live() const;      // a camera: cannot rewind
   // Number of frames according to the container (0: unknown); the true number is known at the end.
   [[nodiscard]] int64_t num_frames_hint() const;
-  // Of the first frame: 0, or the number of the first of numbered pictures.
+  // Of the first frame: 0, or the number of the first of numbered images.
   [[nodiscard]] int64_t first_index() const;
-  // Of a camera's picture in the last frame, had the camera been opened alone: Frame::index unless numbers differ, or
-  // one of them dropped a picture.
+  // Of a camera's image in the last frame, had the camera been opened alone: Frame::index unless numbers differ, or
+  // one of them dropped an image.
   [[nodiscard]] int64_t own_index(int camera) const;
   [[nodiscard]] const std::string& name() const;
   // The focal length as the 35 mm equivalent, mm: what a video's or the first JPEG's metadata (QuickTime, EXIF) say.
@@ -92,11 +92,11 @@ class Video {
 // more than 10 %.
 Result<Video> join_sources(std::vector<std::unique_ptr<FrameSource>> sources, const VideoOptions& options = {});
 
-// Opens a file, a directory of pictures, a printf pattern ("img-%06d.png") or "camera:N".
+// Opens a file, a directory of images, a printf pattern ("img-%06d.png") or "camera:N".
 // A file's frames are as a player shows them: turned upright, of square pixels, each at the time its container says,
 // counted from the first one's; where it has none, index / fps. Several cameras' frames go together by their times.
-// Pictures whose names are one text and a number up to 99,999,999 each (000030.png, walk-7.png) come in the order of
-// their numbers, which are the indices of their frames; gaps stay gaps, in time too. Other pictures come in the order
+// Images whose names are one text and a number up to 99,999,999 each (000030.png, walk-7.png) come in the order of
+// their numbers, which are the indices of their frames; gaps stay gaps, in time too. Other images come in the order
 // of their names, counted from 0. So do those of several inputs whose numbers differ.
 // Errors: missing, empty, not a video, no frame in it, a number that is there twice; several inputs whose rates differ
 // by more than 10 %.
@@ -111,8 +111,8 @@ class VideoWriter {
   VideoWriter& operator=(VideoWriter&&) noexcept;
   ~VideoWriter();
 
-  // At `time_ns`, in the first picture's own time, or one frame interval after the last. Errors: size other than the
-  // first picture's; the encoder refuses; not writable. REQUIRES: times that grow.
+  // At `time_ns`, in the first image's own time, or one frame interval after the last. Errors: size other than the
+  // first image's; the encoder refuses; not writable. REQUIRES: times that grow.
   Result<void> write(const ByteImage& image, std::optional<int64_t> time_ns = {});
   // Errors: not writable (disk full). A second call does nothing.
   Result<void> close();
@@ -124,7 +124,7 @@ class VideoWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-// `fps`: nominal, where pictures have times of their own. Errors: not writable; no H.264 encoder.
+// `fps`: nominal, where images have times of their own. Errors: not writable; no H.264 encoder.
 Result<VideoWriter> create_video(const std::filesystem::path& path, int width, int height, double fps);
 
 }  // namespace silpose

@@ -10,7 +10,7 @@
 
 #include "silpose/video/ffmpeg.h"
 #include "silpose/video/pixel_converter.h"
-#include "silpose/video/shown_picture.h"
+#include "silpose/video/shown_image.h"
 
 extern "C" {
 #include <libavutil/display.h>
@@ -79,7 +79,7 @@ class VideoFile : public FrameSource {
     constexpr int kMostFailures = 1000;  // of a decoder that keeps failing without consuming input
     for (int failures = 0; failures < kMostFailures;) {
       const int code = avcodec_receive_frame(decoder_.get(), decoded_.get());
-      if (code == 0) return picture();
+      if (code == 0) return image();
       if (code == AVERROR_EOF) break;
       if (code != AVERROR(EAGAIN)) {
         ++num_undecoded_, ++failures;
@@ -182,19 +182,19 @@ class VideoFile : public FrameSource {
     }
   }
 
-  Result<std::optional<TimedImage>> picture() {
+  Result<std::optional<TimedImage>> image() {
     const AVFrame& frame = *decoded_;
     if (num_given_ == 0) look_at_first(frame);
     const bool has_fields = is_interlaced(frame);
     if (has_fields && !warned_interlaced_) {
-      warnings_.push_back(fmt::format("{}: interlaced; one field of each picture is used", name_));
+      warnings_.push_back(fmt::format("{}: interlaced; one field of each image is used", name_));
     }
     warned_interlaced_ = warned_interlaced_ || has_fields;
     Result<cv::Mat> converted = converter_.convert(frame);
     if (!converted) return error("{}: {}", name_, converted.error().message);
     cv::Mat& stored = *converted;
     if (has_fields && stored.rows > 1) keep_one_field(stored, is_top_field_first(frame));
-    TimedImage shown{.image = shown_picture(stored, pixel_aspect_, turn_), .time_ns = time_of(frame)};
+    TimedImage shown{.image = shown_image(stored, pixel_aspect_, turn_), .time_ns = time_of(frame)};
     ++num_given_;
     return std::optional<TimedImage>(std::move(shown));
   }
@@ -247,7 +247,7 @@ class VideoFile : public FrameSource {
     }
   }
 
-  // Since the first picture. Where a constant rate explains the stamp within the container's rounding, exactly that.
+  // Since the first image. Where a constant rate explains the stamp within the container's rounding, exactly that.
   [[nodiscard]] std::optional<int64_t> time_of(const AVFrame& frame) const {
     if (!first_pts_ || frame.best_effort_timestamp == AV_NOPTS_VALUE) return std::nullopt;
     constexpr int64_t kMostRounding_ns = 2'000'000;
@@ -262,7 +262,7 @@ class VideoFile : public FrameSource {
   [[nodiscard]] double stream_duration_s() const {
     return stream_->duration > 0 ? static_cast<double>(stream_->duration) * av_q2d(stream_->time_base) : 0;
   }
-  // Pictures and sound end before the file says, by more than rounding may explain.
+  // Images and sound end before the file says, by more than rounding may explain.
   [[nodiscard]] bool ends_early() const {
     if (input_->duration <= 0 || input_->duration_estimation_method == AVFMT_DURATION_FROM_BITRATE) return false;
     const double declared_s = static_cast<double>(input_->duration) / AV_TIME_BASE;
@@ -279,7 +279,7 @@ class VideoFile : public FrameSource {
   FrameHandle decoded_;
   PixelConverter converter_;
   const AVStream* stream_ = nullptr;  // input_'s
-  std::optional<int64_t> counted_;    // pictures, where the container does not say
+  std::optional<int64_t> counted_;    // images, where the container does not say
   double mean_fps_ = 0;               // of those counted
   double fps_ = 0, pixel_aspect_ = 1;
   double end_s_ = 0;      // of what was read, in the file's time

@@ -1,4 +1,4 @@
-// VideoFile: the pictures of a video file as a player shows them (upright, square pixels, one field of interlaced ones,
+// VideoFile: the images of a video file as a player shows them (upright, square pixels, one field of interlaced ones,
 // 8-bit B, G, R whatever the depth), each at the time its container says. Made by open_frame_source().
 // Based on: FFmpeg's libavformat, libavcodec and libswscale.
 // Threads: one thread per source.

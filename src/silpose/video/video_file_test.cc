@@ -35,7 +35,7 @@ ByteImage corners(int width, int height) {
   return image;
 }
 
-// The colours around the picture, clockwise from the top left: "rgdb" as corners() draws them.
+// The colours around the image, clockwise from the top left: "rgdb" as corners() draws them.
 std::string clockwise(const ByteImage& image) {
   std::string found;
   const int w = image.width(), h = image.height();
@@ -51,8 +51,8 @@ class VideoFileTest : public FolderTest {
  protected:
   std::string write(const std::string& name, const ClipForTest& clip, int frames = 3, int width = 64,
                     int height = 48) const {
-    const std::vector<ByteImage> pictures(static_cast<size_t>(frames), corners(width, height));
-    write_clip_for_test(folder_ / name, pictures, clip);
+    const std::vector<ByteImage> images(static_cast<size_t>(frames), corners(width, height));
+    write_clip_for_test(folder_ / name, images, clip);
     return (folder_ / name).string();
   }
 
@@ -65,7 +65,7 @@ class VideoFileTest : public FolderTest {
 
 constexpr int32_t kOne = 1 << 16, kLast = 1 << 30;
 
-TEST_F(VideoFileTest, TurnedPicturesComeUpright) {
+TEST_F(VideoFileTest, TurnedImagesComeUpright) {
   struct Case {
     std::array<int32_t, 4> abcd;  // x' = a x + c y, y' = b x + d y
     std::string shown;
@@ -137,7 +137,7 @@ TEST_F(VideoFileTest, WithoutTimesTheRateCounts) {
 }
 
 TEST_F(VideoFileTest, CamerasGoTogetherByTheirTimes) {
-  // The second camera dropped its third picture, the first its fifth.
+  // The second camera dropped its third image, the first its fifth.
   const std::string a = write("a.mkv", {.times_ms = {0, 33, 67, 100, 167, 200}}, 6);
   const std::string b = write("b.mkv", {.times_ms = {0, 33, 100, 133, 167, 200}}, 6);
   Video video = open_video(std::vector<std::string>{a, b}).value();
@@ -194,7 +194,7 @@ TEST_F(VideoFileTest, DeepGreyAndTransparentPixelsComeAsEightBitColour) {
   EXPECT_EQ(image.at(16, 12, 0), image.at(16, 12, 2));
 }
 
-TEST_F(VideoFileTest, InterlacedPicturesLoseTheirComb) {
+TEST_F(VideoFileTest, InterlacedImagesLoseTheirComb) {
   // A bright column that moved between the two fields.
   ByteImage comb(64, 48, 3, 20);
   for (int y = 0; y < 48; ++y) {
@@ -213,9 +213,9 @@ TEST_F(VideoFileTest, InterlacedPicturesLoseTheirComb) {
 }
 
 TEST_F(VideoFileTest, SoundAloneIsNoVideo) {
-  const std::string path = write("song.mkv", {.has_sound = true, .has_pictures = false});
+  const std::string path = write("song.mkv", {.has_sound = true, .has_images = false});
   EXPECT_THAT(open_video(path).error().message, EndsWith("song.mkv: sound without a video"));
-  Video both = open_video(write("both.mkv", {.has_sound = true}, 5)).value();  // which lasts longer than the pictures
+  Video both = open_video(write("both.mkv", {.has_sound = true}, 5)).value();  // which lasts longer than the images
   EXPECT_EQ(times_ms(both).size(), 5u);
   EXPECT_FALSE(both.truncated());
 }
@@ -238,13 +238,13 @@ TEST_F(VideoFileTest, WithoutItsIndexAnMp4IsCutOff) {
 }
 
 TEST_F(VideoFileTest, CutStreamsGiveWhatIsThereAndSaySo) {
-  std::vector<ByteImage> pictures;
+  std::vector<ByteImage> images;
   for (int i = 0; i < 60; ++i) {
-    pictures.push_back(corners(64, 48));
-    for (int x = 0; x < 64; ++x) pictures.back().at(x, i * 3 % 48, 1) = static_cast<uint8_t>(i * 37 + x * 5);
+    images.push_back(corners(64, 48));
+    for (int x = 0; x < 64; ++x) images.back().at(x, i * 3 % 48, 1) = static_cast<uint8_t>(i * 37 + x * 5);
   }
   const fs::path path = folder_ / "cut.mkv";
-  write_clip_for_test(path, pictures, {});
+  write_clip_for_test(path, images, {});
   fs::resize_file(path, fs::file_size(path) / 2);
   Video video = open_video(path.string()).value();
   const size_t count = times_ms(video).size();

@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-// A dark picture with a bright column at x = 4 index.
-ByteImage picture(int index, int width = 64, int height = 48) {
+// A dark image with a bright column at x = 4 index.
+ByteImage image(int index, int width = 64, int height = 48) {
   ByteImage image(width, height, 3, 20);
   for (int y = 0; y < height; ++y) {
     for (int x = 4 * index; x < std::min(width, 4 * index + 4); ++x) image.at(x, y, 2) = 220;
@@ -34,14 +34,14 @@ class VideoTest : public FolderTest {
   [[nodiscard]] std::string write_clip(const std::string& name, int frames, double fps, int width = 64,
                                        int height = 48) const {
     VideoWriter writer = create_video(at(name), width, height, fps).value();
-    for (int i = 0; i < frames; ++i) writer.write(picture(i % 12, width, height)).value();
+    for (int i = 0; i < frames; ++i) writer.write(image(i % 12, width, height)).value();
     writer.close().value();
     return at(name);
   }
 
-  void write_pictures(const std::string& format, int first, int count) const {
+  void write_images(const std::string& format, int first, int count) const {
     for (int i = first; i < first + count; ++i) {
-      write_image(at(fmt::format(fmt::runtime(format), i)), picture(i % 12)).value();
+      write_image(at(fmt::format(fmt::runtime(format), i)), image(i % 12)).value();
     }
   }
 };
@@ -55,7 +55,7 @@ int64_t count_frames(Video& video) {
   return count;
 }
 
-TEST_F(VideoTest, FileRoundTripKeepsPicturesCountAndTimes) {
+TEST_F(VideoTest, FileRoundTripKeepsImagesCountAndTimes) {
   Video video = open_video(write_clip("clip.mp4", 12, 29.97)).value();
   EXPECT_EQ(video.num_cameras(), 1);
   EXPECT_EQ(video.width(), 64);
@@ -93,23 +93,23 @@ TEST_F(VideoTest, OddSizesArePaddedByOne) {
   EXPECT_EQ(video.width(), 64);
   EXPECT_EQ(video.height(), 48);
   VideoWriter writer = create_video(at("other.mp4"), 63, 47, 30).value();
-  EXPECT_THAT(writer.write(ByteImage(64, 48, 3)).error().message, HasSubstr("a picture of 64x48"));
+  EXPECT_THAT(writer.write(ByteImage(64, 48, 3)).error().message, HasSubstr("an image of 64x48"));
   EXPECT_TRUE(writer.write(ByteImage(63, 47, 1)).ok());
   ASSERT_TRUE(writer.close().ok());
   EXPECT_FALSE(writer.write(ByteImage(63, 47, 3)).ok());
 }
 
 TEST_F(VideoTest, DirectoryIsReadInNameOrderAtTheDefaultRate) {
-  write_image(at("b.png"), picture(1)).value();
-  write_image(at("a.png"), picture(0)).value();
-  write_image(at("c.PNG"), picture(2)).value();
-  std::ofstream(at("notes.txt")) << "not a picture";
+  write_image(at("b.png"), image(1)).value();
+  write_image(at("a.png"), image(0)).value();
+  write_image(at("c.PNG"), image(2)).value();
+  std::ofstream(at("notes.txt")) << "not an image";
   Video video = open_video(folder_.string(), {.default_fps = 50}).value();
   EXPECT_TRUE(video.fps_assumed());
   EXPECT_EQ(video.num_frames_hint(), 3);
   int count = 0;
   for (const Frame& frame : video) {
-    EXPECT_EQ(frame.images[0], picture(count));
+    EXPECT_EQ(frame.images[0], image(count));
     EXPECT_EQ(frame.time_ns, 20'000'000 * count);
     ++count;
   }
@@ -117,31 +117,31 @@ TEST_F(VideoTest, DirectoryIsReadInNameOrderAtTheDefaultRate) {
 }
 
 TEST_F(VideoTest, PatternFollowsTheNumbers) {
-  write_pictures("img-{:03}.png", 8, 4);
-  write_image(at("img-9.png"), picture(5)).value();  // too few digits: another name
+  write_images("img-{:03}.png", 8, 4);
+  write_image(at("img-9.png"), image(5)).value();  // too few digits: another name
   Video video = open_video(at("img-%03d.png")).value();
   EXPECT_EQ(video.first_index(), 8);
   int index = 8;
   for (const Frame& frame : video) {
     EXPECT_EQ(frame.index, index);
-    EXPECT_EQ(frame.images[0], picture(index++ % 12));
+    EXPECT_EQ(frame.images[0], image(index++ % 12));
   }
   EXPECT_EQ(index, 12);
 
   fs::remove(at("img-009.png"));
-  EXPECT_THAT(open_video(at("img-%03d.png")).error().message, EndsWith("img-%03d.png: picture number 9 is missing"));
-  EXPECT_THAT(open_video(at("other-%d.png")).error().message, EndsWith("no picture has such a name"));
+  EXPECT_THAT(open_video(at("img-%03d.png")).error().message, EndsWith("img-%03d.png: image number 9 is missing"));
+  EXPECT_THAT(open_video(at("other-%d.png")).error().message, EndsWith("no image has such a name"));
 }
 
 TEST_F(VideoTest, UnpaddedPatternOrdersByNumberNotByName) {
-  write_pictures("{}.png", 9, 2);
+  write_images("{}.png", 9, 2);
   Video video = open_video(at("%d.png")).value();
-  EXPECT_EQ(video.next().value()->images[0], picture(9));
-  EXPECT_EQ(video.next().value()->images[0], picture(10));
+  EXPECT_EQ(video.next().value()->images[0], image(9));
+  EXPECT_EQ(video.next().value()->images[0], image(10));
 }
 
-TEST_F(VideoTest, NumbersOfPicturesAreTheirFrames) {
-  for (const int i : {30, 31, 35}) write_image(at(fmt::format("walk_{:06}.png", i)), picture(i % 12)).value();
+TEST_F(VideoTest, NumbersOfImagesAreTheirFrames) {
+  for (const int i : {30, 31, 35}) write_image(at(fmt::format("walk_{:06}.png", i)), image(i % 12)).value();
   Video video = open_video(folder_.string(), {.default_fps = 10}).value();
   EXPECT_EQ(video.first_index(), 30);
   EXPECT_EQ(video.num_frames_hint(), 3);
@@ -150,20 +150,20 @@ TEST_F(VideoTest, NumbersOfPicturesAreTheirFrames) {
       const Frame frame = video.next().value().value();
       EXPECT_EQ(frame.index, i);
       EXPECT_EQ(frame.time_ns, int64_t{100'000'000} * i);
-      EXPECT_EQ(frame.images[0], picture(i % 12));
+      EXPECT_EQ(frame.images[0], image(i % 12));
     }
     EXPECT_FALSE(video.next().value().has_value());
     ASSERT_TRUE(video.rewind().ok());
   }
 }
 
-TEST_F(VideoTest, NumberedPicturesComeInTheOrderOfTheirNumbers) {
-  write_pictures("img{}.png", 9, 2);
+TEST_F(VideoTest, NumberedImagesComeInTheOrderOfTheirNumbers) {
+  write_images("img{}.png", 9, 2);
   Video video = open_video(folder_.string()).value();
   EXPECT_EQ(video.next().value()->index, 9);
   EXPECT_EQ(video.next().value()->index, 10);
 
-  write_image(at("img010.jpg"), picture(1)).value();
+  write_image(at("img010.jpg"), image(1)).value();
   EXPECT_THAT(open_video(folder_.string()).error().message, EndsWith("img010.jpg and img10.png have the same number"));
 }
 
@@ -172,18 +172,18 @@ TEST_F(VideoTest, OtherNamesAreCountedFromZero) {
   for (const std::vector<std::string>& names : sets) {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
-    for (size_t i = 0; i < names.size(); ++i) write_image(at(names[i]), picture(static_cast<int>(i))).value();
+    for (size_t i = 0; i < names.size(); ++i) write_image(at(names[i]), image(static_cast<int>(i))).value();
     Video video = open_video(folder_.string()).value();
-    EXPECT_EQ(video.next().value()->images[0], picture(0)) << names[0];
+    EXPECT_EQ(video.next().value()->images[0], image(0)) << names[0];
     EXPECT_EQ(count_frames(video = open_video(folder_.string()).value()), std::ssize(names)) << names[0];
   }
 }
 
 TEST_F(VideoTest, CamerasKeepTheNumbersThatTheyShare) {
   for (const char* name : {"a", "b", "c"}) fs::create_directories(at(name));
-  write_pictures("a/{}.png", 5, 4);
-  write_pictures("b/{:03}.png", 5, 3);
-  write_pictures("c/{}.png", 6, 3);
+  write_images("a/{}.png", 5, 4);
+  write_images("b/{:03}.png", 5, 3);
+  write_images("c/{}.png", 6, 3);
   Video same = open_video(std::vector<std::string>{at("a"), at("b")}).value();
   EXPECT_EQ(same.first_index(), 5);
   int64_t last = 0;
@@ -198,20 +198,20 @@ TEST_F(VideoTest, CamerasKeepTheNumbersThatTheyShare) {
 }
 
 TEST_F(VideoTest, ChangeOfSizeNamesTheFrame) {
-  write_pictures("{:03}.png", 0, 2);
-  write_image(at("002.png"), picture(2, 32, 48)).value();
+  write_images("{:03}.png", 0, 2);
+  write_image(at("002.png"), image(2, 32, 48)).value();
   Video video = open_video(folder_.string()).value();
   (void)video.next().value();
   (void)video.next().value();
   EXPECT_THAT(video.next().error().message, HasSubstr("frame 2 is 32x48, those before it 64x48"));
 }
 
-TEST_F(VideoTest, BrokenPictureNamesTheFile) {
-  write_pictures("{:03}.png", 0, 2);
+TEST_F(VideoTest, BrokenImageNamesTheFile) {
+  write_images("{:03}.png", 0, 2);
   fs::resize_file(at("001.png"), fs::file_size(at("001.png")) / 2);
   Video video = open_video(folder_.string()).value();
   (void)video.next().value();
-  EXPECT_THAT(video.next().error().message, EndsWith("001.png: the picture is cut off"));
+  EXPECT_THAT(video.next().error().message, EndsWith("001.png: the image is cut off"));
 }
 
 TEST_F(VideoTest, NamesWhatIsNotAVideo) {
@@ -225,7 +225,7 @@ TEST_F(VideoTest, NamesWhatIsNotAVideo) {
   noise.close();
   EXPECT_THAT(open_video(at("noise.mp4")).error().message, HasSubstr("noise.mp4: not a video"));
   fs::create_directory(at("folder"));
-  EXPECT_THAT(open_video(at("folder")).error().message, EndsWith("no pictures in this directory"));
+  EXPECT_THAT(open_video(at("folder")).error().message, EndsWith("no images in this directory"));
   EXPECT_THAT(open_video("camera:x").error().message, EndsWith("not the number of a camera"));
   EXPECT_THAT(open_video("camera:977").error().message, EndsWith("camera:977: no such camera"));
 }
@@ -269,7 +269,7 @@ void move_index_to_front(const std::string& path) {
 
 TEST_F(VideoTest, CutFileEndsEarlyAndSaysSo) {
   VideoWriter writer = create_video(at("clip.mp4"), 64, 48, 30).value();
-  for (int i = 0; i < 120; ++i) writer.write(picture(i * 7 % 16)).value();
+  for (int i = 0; i < 120; ++i) writer.write(image(i * 7 % 16)).value();
   writer.close().value();
   move_index_to_front(at("clip.mp4"));
   Video whole = open_video(at("clip.mp4")).value();
@@ -298,10 +298,10 @@ TEST_F(VideoTest, CamerasInStepEndWithTheShortest) {
   EXPECT_THAT(open_video(std::vector<std::string>{a, c}).error().message, HasSubstr("c.mp4: 25.000 frames per second"));
 }
 
-TEST_F(VideoTest, OnePictureIsAVideoOfOneFrame) {
-  write_image(at("one.png"), picture(3)).value();
+TEST_F(VideoTest, OneImageIsAVideoOfOneFrame) {
+  write_image(at("one.png"), image(3)).value();
   Video video = open_video(at("one.png")).value();
-  EXPECT_EQ(video.next().value()->images[0], picture(3));
+  EXPECT_EQ(video.next().value()->images[0], image(3));
   EXPECT_FALSE(video.next().value().has_value());
 }
 
@@ -385,9 +385,9 @@ class BadSource : public MemorySource {
  public:
   explicit BadSource(bool few_numbers) : MemorySource({ByteImage(4, 3, 3), ByteImage(4, 3, 3)}), few_(few_numbers) {}
   Result<std::optional<TimedImage>> next() override {
-    auto picture = MemorySource::next();
-    if (!few_ && picture && picture->has_value()) (*picture)->image = ByteImage(4, 3, 1);
-    return picture;
+    auto image = MemorySource::next();
+    if (!few_ && image && image->has_value()) (*image)->image = ByteImage(4, 3, 1);
+    return image;
   }
   [[nodiscard]] std::span<const int64_t> numbers() const override {
     return few_ ? std::span<const int64_t>(&one_, 1) : std::span<const int64_t>();

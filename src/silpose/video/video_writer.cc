@@ -19,7 +19,7 @@ struct OutputDelete {
   }
 };
 
-// Ticks fine enough for any picture's time, of which a frame's time at `fps` is a whole number.
+// Ticks fine enough for any image's time, of which a frame's time at `fps` is a whole number.
 struct Ticks {
   AVRational base;
   int64_t of_frame = 1;
@@ -92,8 +92,8 @@ struct VideoWriter::Impl {
   }
 
   // Null: what the encoder still holds.
-  Result<void> encode(const AVFrame* picture) {
-    if (const int code = avcodec_send_frame(encoder.get(), picture); code < 0) {
+  Result<void> encode(const AVFrame* image) {
+    if (const int code = avcodec_send_frame(encoder.get(), image); code < 0) {
       return error("{}: a frame cannot be encoded ({})", name, ffmpeg_text(code));
     }
     while (true) {
@@ -119,7 +119,7 @@ Result<void> VideoWriter::write(const ByteImage& image, std::optional<int64_t> t
   Impl& impl = *impl_;
   check(image.channels() == 1 || image.channels() == 3, "VideoWriter: {} channels", image.channels());
   if (image.width() != impl.width || image.height() != impl.height) {
-    return error("{}: a picture of {}x{} for a video of {}x{}", impl.name, image.width(), image.height(), impl.width,
+    return error("{}: an image of {}x{} for a video of {}x{}", impl.name, image.width(), image.height(), impl.width,
                  impl.height);
   }
   if (impl.is_closed) return error("{}: the video is closed", impl.name);
@@ -139,7 +139,7 @@ Result<void> VideoWriter::write(const ByteImage& image, std::optional<int64_t> t
   if (time_ns) {
     if (!impl.first_ns) impl.first_ns = *time_ns;
     tick = av_rescale_q(*time_ns - *impl.first_ns, {1, 1'000'000'000}, impl.ticks.base);
-    check(tick > impl.frame->pts || impl.next_tick == 0, "VideoWriter: a picture at {} ns is not after the last",
+    check(tick > impl.frame->pts || impl.next_tick == 0, "VideoWriter: an image at {} ns is not after the last",
           *time_ns);
   }
   impl.frame->pts = tick;

@@ -24,7 +24,7 @@ function seek(step) {
   if (!count) return;
   cursor = Math.min(count - 1, Math.max(0, step));
   if (hasVideo && Number.isFinite(video.duration)) {
-    // One picture per step, which stays until the next one's time.
+    // One image per step, which stays until the next one's time.
     const until = cursor + 1 < count ? times[cursor + 1] - times[0] : video.duration;
     video.currentTime = Math.min((times[cursor] - times[0] + until) / 2, video.duration);
   }

@@ -95,11 +95,11 @@ function writeMasks() {
     if (!examples.length) continue;
     if (data.strips.length > 1) element("h3", byId("strips"), camera);
     const strip = element("div", byId("strips"), undefined, "strip");
-    for (const {frame, time, width, height, empty, picture} of examples) {
+    for (const {frame, time, width, height, empty, image} of examples) {
       const button = element("button", strip);
       const image = element("img", button);
       const found = empty ? ", in which nothing was found" : " with the outline of its mask";
-      Object.assign(image, {src: picture, width, height, alt: `The picture at ${seconds(time)}${found}`});
+      Object.assign(image, {src: image, width, height, alt: `The image at ${seconds(time)}${found}`});
       element("span", button, `${seconds(time)}${empty ? ": nothing found" : ""}`);
       button.title = `frame ${frame}`;
       button.addEventListener("click", () => seek(stepAt(time)));

@@ -1,4 +1,4 @@
-#include "silpose/video/shown_picture.h"
+#include "silpose/video/shown_image.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -21,15 +21,15 @@ double believed_pixel_aspect(double aspect) {
   return std::abs(aspect - 1) <= kNotSeen ? 1 : aspect;
 }
 
-void keep_one_field(cv::Mat& picture, bool top_field_first) {
-  for (int y = top_field_first ? 1 : 0; y < picture.rows; y += 2) {
-    const cv::Mat above = picture.row(y > 0 ? y - 1 : 1), below = picture.row(y + 1 < picture.rows ? y + 1 : y - 1);
-    cv::Mat line = picture.row(y);
+void keep_one_field(cv::Mat& image, bool top_field_first) {
+  for (int y = top_field_first ? 1 : 0; y < image.rows; y += 2) {
+    const cv::Mat above = image.row(y > 0 ? y - 1 : 1), below = image.row(y + 1 < image.rows ? y + 1 : y - 1);
+    cv::Mat line = image.row(y);
     cv::addWeighted(above, 0.5, below, 0.5, 0, line);
   }
 }
 
-ByteImage shown_picture(const cv::Mat& stored, double pixel_aspect, const Turn& turn) {
+ByteImage shown_image(const cv::Mat& stored, double pixel_aspect, const Turn& turn) {
   cv::Mat square = stored;
   if (pixel_aspect > 1) {
     cv::resize(stored, square, cv::Size(static_cast<int>(std::lround(stored.cols * pixel_aspect)), stored.rows), 0, 0,

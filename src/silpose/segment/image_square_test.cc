@@ -1,4 +1,4 @@
-#include "silpose/segment/picture_square.h"
+#include "silpose/segment/image_square.h"
 
 #include <gtest/gtest.h>
 
@@ -12,19 +12,19 @@ namespace {
 
 constexpr double kQuarterTurn = std::numbers::pi / 2;
 
-TEST(PictureSquare, PointsAndTurns) {
-  const PictureSquare square{100, 50, 20, kQuarterTurn};  // clockwise: its top looks to the right
-  const auto top = square.in_picture(0.5, 0), left = square.in_picture(0, 0.5);
+TEST(ImageSquare, PointsAndTurns) {
+  const ImageSquare square{100, 50, 20, kQuarterTurn};  // clockwise: its top looks to the right
+  const auto top = square.in_image(0.5, 0), left = square.in_image(0, 0.5);
   EXPECT_NEAR(top[0], 110, 1e-9);
   EXPECT_NEAR(top[1], 50, 1e-9);
   EXPECT_NEAR(left[0], 100, 1e-9);
   EXPECT_NEAR(left[1], 40, 1e-9);
-  const PictureSquare around = square_around(100, 50, 108, 50);
+  const ImageSquare around = square_around(100, 50, 108, 50);
   EXPECT_NEAR(around.side, 20, 1e-9);
   EXPECT_NEAR(around.turn_rad, kQuarterTurn, 1e-9);
 }
 
-ByteImage numbered_picture(int width, int height) {
+ByteImage numbered_image(int width, int height) {
   ByteImage image(width, height, 3);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -36,8 +36,8 @@ ByteImage numbered_picture(int width, int height) {
   return image;
 }
 
-TEST(SampleSquare, OfItsOwnSizeIsThePictureInRedGreenBlue) {
-  const std::vector<float> values = sample_square(numbered_picture(60, 50), {14, 24, 8, 0}, 8);
+TEST(SampleSquare, OfItsOwnSizeIsTheImageInRedGreenBlue) {
+  const std::vector<float> values = sample_square(numbered_image(60, 50), {14, 24, 8, 0}, 8);
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 8; ++x) {
       const float* at = &values[static_cast<size_t>(3 * (8 * y + x))];
@@ -50,16 +50,16 @@ TEST(SampleSquare, OfItsOwnSizeIsThePictureInRedGreenBlue) {
 
 TEST(SampleSquare, TurnedShrunkAndOutside) {
   // Upper row of a square turned clockwise by a quarter: down along its right side.
-  const std::vector<float> turned = sample_square(numbered_picture(60, 50), {14, 24, 8, kQuarterTurn}, 8);
+  const std::vector<float> turned = sample_square(numbered_image(60, 50), {14, 24, 8, kQuarterTurn}, 8);
   EXPECT_NEAR(turned[1] * 255, 20, 0.6);
   EXPECT_NEAR(turned[2] * 255, 17, 0.6);
   EXPECT_NEAR(turned[3 * 7 + 1] * 255, 27, 0.6);
   // A quarter as large: the mean of what each new pixel covers.
-  const std::vector<float> shrunk = sample_square(numbered_picture(60, 50), {16, 16, 32, 0}, 8);
+  const std::vector<float> shrunk = sample_square(numbered_image(60, 50), {16, 16, 32, 0}, 8);
   EXPECT_NEAR(shrunk[3 * (8 * 3 + 2) + 2] * 255, 9.5, 0.6);
   EXPECT_NEAR(shrunk[3 * (8 * 3 + 2) + 1] * 255, 13.5, 0.6);
-  for (const float value : sample_square(numbered_picture(60, 50), {500, 24, 8, 0}, 8)) EXPECT_EQ(value, 0);
-  EXPECT_THROW((void)sample_square(numbered_picture(6, 5), {3, 3, 0, 0}, 8), std::invalid_argument);
+  for (const float value : sample_square(numbered_image(60, 50), {500, 24, 8, 0}, 8)) EXPECT_EQ(value, 0);
+  EXPECT_THROW((void)sample_square(numbered_image(6, 5), {3, 3, 0, 0}, 8), std::invalid_argument);
 }
 
 // Stripes of one pixel become grey where they are finer than the new pixels.
@@ -78,18 +78,18 @@ TEST(SampleSquare, DoesNotAlias) {
   }
 }
 
-// A disc drawn in the square is found where it lies in the picture, its edge finer than the square's pixels.
-TEST(ValuesInPicture, PutsADiscBackInItsPlace) {
+// A disc drawn in the square is found where it lies in the image, its edge finer than the square's pixels.
+TEST(ValuesInImage, PutsADiscBackInItsPlace) {
   constexpr int kSize = 64;
-  const PictureSquare square{200, 150, 320, 0.4};
-  const auto middle = square.in_picture(0.7, 0.4);
+  const ImageSquare square{200, 150, 320, 0.4};
+  const auto middle = square.in_image(0.7, 0.4);
   std::vector<float> values;
   for (int y = 0; y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
       values.push_back(static_cast<float>(8 - std::hypot(x + 0.5 - 0.7 * kSize, y + 0.5 - 0.4 * kSize)));
     }
   }
-  const Image<float> found = values_in_picture(values, kSize, square, 400, 300, -10);
+  const Image<float> found = values_in_image(values, kSize, square, 400, 300, -10);
   Mask mask(400, 300), disc(400, 300);
   for (int y = 0; y < 300; ++y) {
     for (int x = 0; x < 400; ++x) {
@@ -98,7 +98,7 @@ TEST(ValuesInPicture, PutsADiscBackInItsPlace) {
     }
   }
   EXPECT_GT(intersection_over_union(mask, disc), 0.985);
-  EXPECT_EQ(values_in_picture(values, kSize, {-900, 0, 320, 0}, 400, 300, -10), Image<float>(400, 300, 1, -10));
+  EXPECT_EQ(values_in_image(values, kSize, {-900, 0, 320, 0}, 400, 300, -10), Image<float>(400, 300, 1, -10));
 }
 
 }  // namespace

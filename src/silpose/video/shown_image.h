@@ -1,4 +1,4 @@
-// From a picture as a video stores it to the picture as a player shows it: turned upright, of square pixels, without
+// From an image as a video stores it to the image as a player shows it: turned upright, of square pixels, without
 // the comb of two interlaced fields.
 // Threads: functions without state.
 #pragma once
@@ -25,9 +25,9 @@ std::optional<Turn> turn_of_matrix(std::span<const int32_t, 9> matrix);
 double believed_pixel_aspect(double aspect);
 
 // Lines of the field that comes second give way to the mean of those around them. [H, W, 3]
-void keep_one_field(cv::Mat& picture, bool top_field_first);
+void keep_one_field(cv::Mat& image, bool top_field_first);
 
 // `stored` [H, W, 3] of pixels `pixel_aspect` wide for their height, widened or heightened to square ones, then turned.
-ByteImage shown_picture(const cv::Mat& stored, double pixel_aspect, const Turn& turn);
+ByteImage shown_image(const cv::Mat& stored, double pixel_aspect, const Turn& turn);
 
 }  // namespace silpose

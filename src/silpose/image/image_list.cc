@@ -1,4 +1,4 @@
-#include "silpose/image/picture_list.h"
+#include "silpose/image/image_list.h"
 
 #include <algorithm>
 #include <cctype>
@@ -50,22 +50,22 @@ std::vector<int64_t> numbers_of(const std::vector<fs::path>& paths) {
 }
 
 // In the order of their numbers where all have one, of their names otherwise.
-Result<PictureList> pictures_in(const fs::path& folder) {
+Result<ImageList> images_in(const fs::path& folder) {
   Result<std::vector<fs::path>> paths = files_in(folder);
   if (!paths) return paths.failure();
-  std::erase_if(*paths, [](const fs::path& path) { return !is_picture_name(path); });
-  if (paths->empty()) return error("{}: no pictures in this directory", folder.string());
+  std::erase_if(*paths, [](const fs::path& path) { return !is_image_name(path); });
+  if (paths->empty()) return error("{}: no images in this directory", folder.string());
   const auto number = [](const fs::path& path) { return split_name(path)->second; };
   if (!numbers_of(*paths).empty()) std::ranges::stable_sort(*paths, {}, number);
-  PictureList pictures{.paths = std::move(*paths)};
-  pictures.numbers = numbers_of(pictures.paths);
-  const auto twice = std::ranges::adjacent_find(pictures.numbers);
-  if (twice != pictures.numbers.end()) {
-    const auto at = static_cast<size_t>(twice - pictures.numbers.begin());
-    return error("{}: {} and {} have the same number", folder.string(), pictures.paths[at].filename().string(),
-                 pictures.paths[at + 1].filename().string());
+  ImageList images{.paths = std::move(*paths)};
+  images.numbers = numbers_of(images.paths);
+  const auto twice = std::ranges::adjacent_find(images.numbers);
+  if (twice != images.numbers.end()) {
+    const auto at = static_cast<size_t>(twice - images.numbers.begin());
+    return error("{}: {} and {} have the same number", folder.string(), images.paths[at].filename().string(),
+                 images.paths[at + 1].filename().string());
   }
-  return pictures;
+  return images;
 }
 
 // The pieces of "name-%06d.png".
@@ -86,7 +86,7 @@ std::optional<Pattern> parse_pattern(const std::string& name) {
 }
 
 // In the order of their numbers, which must follow one another.
-Result<PictureList> pictures_of_pattern(const fs::path& input, const Pattern& pattern) {
+Result<ImageList> images_of_pattern(const fs::path& input, const Pattern& pattern) {
   const fs::path folder = input.has_parent_path() ? input.parent_path() : fs::path(".");
   const Result<std::vector<fs::path>> files = files_in(folder);
   if (!files) return files.failure();
@@ -105,36 +105,36 @@ Result<PictureList> pictures_of_pattern(const fs::path& input, const Pattern& pa
     if (digits < pattern.min_digits || (digits > std::max<size_t>(pattern.min_digits, 1) && *first == '0')) continue;
     numbered.emplace_back(number, path);
   }
-  if (numbered.empty()) return error("{}: no picture has such a name", input.string());
+  if (numbered.empty()) return error("{}: no image has such a name", input.string());
   std::sort(numbered.begin(), numbered.end());
-  PictureList pictures;
+  ImageList images;
   for (const auto& [number, path] : numbered) {
-    const int64_t expected = numbered.front().first + std::ssize(pictures.paths);
-    if (number != expected) return error("{}: picture number {} is missing", input.string(), expected);
-    pictures.paths.push_back(path);
-    pictures.numbers.push_back(number);
+    const int64_t expected = numbered.front().first + std::ssize(images.paths);
+    if (number != expected) return error("{}: image number {} is missing", input.string(), expected);
+    images.paths.push_back(path);
+    images.numbers.push_back(number);
   }
-  if (pictures.numbers.back() > kLargestNumber) pictures.numbers.clear();
-  return pictures;
+  if (images.numbers.back() > kLargestNumber) images.numbers.clear();
+  return images;
 }
 
 }  // namespace
 
-bool is_picture_name(const fs::path& path) {
+bool is_image_name(const fs::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  static const std::string kPictures[] = {".png",  ".jpg", ".jpeg", ".bmp", ".tif", ".tiff",
-                                          ".webp", ".ppm", ".pgm",  ".jp2", ".pbm"};
-  return std::find(std::begin(kPictures), std::end(kPictures), extension) != std::end(kPictures);
+  static const std::string kImages[] = {".png",  ".jpg", ".jpeg", ".bmp", ".tif", ".tiff",
+                                        ".webp", ".ppm", ".pgm",  ".jp2", ".pbm"};
+  return std::find(std::begin(kImages), std::end(kImages), extension) != std::end(kImages);
 }
 
-Result<PictureList> list_pictures(const std::string& input) {
+Result<ImageList> list_images(const std::string& input) {
   const fs::path path(input);
   std::error_code code;
-  if (fs::is_directory(path, code)) return pictures_in(path);
-  if (fs::exists(path, code)) return PictureList{.paths = {path}};
-  if (const auto pattern = parse_pattern(path.filename().string())) return pictures_of_pattern(path, *pattern);
+  if (fs::is_directory(path, code)) return images_in(path);
+  if (fs::exists(path, code)) return ImageList{.paths = {path}};
+  if (const auto pattern = parse_pattern(path.filename().string())) return images_of_pattern(path, *pattern);
   return error("{}: no such file or directory", input);
 }
 
