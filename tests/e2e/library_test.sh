@@ -8,7 +8,7 @@ example=$3 count_opens=$4
 
 # Frames in memory, given to the library by a program of 50 lines.
 "$silpose" track still/masks --camera still/camera.toml --model human.body --out command --quiet
-"$example" human.body still/camera.toml still/masks 30 >library.txt
+"$example" still/masks still/camera.toml human.body >library.txt
 python3 - command/poses.csv >command.txt <<'PYTHON'
 import csv
 import sys

@@ -54,7 +54,7 @@ fi
 if grep -vF "$prefix/share/silpose" models.txt; then
   fail "the bodies above are not those of the prefix"
 fi
-examples/example_track_frames "$prefix/share/silpose/human.body" clip/camera.toml clip/masks 30 >track.txt
+examples/example_track_frames clip/masks clip/camera.toml "$prefix/share/silpose/human.body" >track.txt
 step tracked
 [[ $(wc -l <track.txt) == 6 ]] || fail "not one line for each of 6 frames: $(cat track.txt)"
 awk '$3 < 0.8 { exit 1 }' track.txt || fail "visual accuracy below 0.8: $(cat track.txt)"
