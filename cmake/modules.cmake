@@ -9,8 +9,8 @@ set(SILPOSE_FLOORS
   synth=5 fit=5 evaluate=5
   track=6
   offline=7 recording=7
-  session=8
-  experiment=9 report=9)
+  report=8
+  session=9 experiment=9)
 
 function(silpose_floor_of NAME OUT)
   foreach(entry IN LISTS SILPOSE_FLOORS)

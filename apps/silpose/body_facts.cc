@@ -48,14 +48,4 @@ Result<Outcome> write_model(const BodyModel& body, const std::string& out) {
   return outcome;
 }
 
-CLI::Option* add_body_file_option(CLI::App& command, std::string& out) {
-  return command.add_option("--out", out, "The .body file to write")
-      ->required()
-      ->check(CLI::Validator(
-          [](const std::string& path) {
-            return fs::path(path).extension() == ".body" ? "" : path + ": does not end in .body";
-          },
-          "FILE.body"));
-}
-
 }  // namespace silpose::app

@@ -1,7 +1,6 @@
-// What the `model` commands report about a body, and how they write one. Threads: the main thread only.
+// What commands report of a body, and how they write one. Threads: the main thread only.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -13,9 +12,6 @@ namespace silpose::app {
 
 nlohmann::ordered_json facts_of(const BodyModel& body);
 std::string summary_of(const BodyModel& body);
-
-// --out FILE.body, required.
-CLI::Option* add_body_file_option(CLI::App& command, std::string& out);
 
 // Errors: not writable.
 Result<Outcome> write_model(const BodyModel& body, const std::string& out);

@@ -1,16 +1,15 @@
 // silpose calibrate: cameras from a printed board.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <charconv>
 #include <memory>
 
 #include "apps/silpose/command.h"
-#include "apps/silpose/run_facts.h"
+#include "silpose/base/option_error.h"
 #include "silpose/base/whole_file.h"
 #include "silpose/calibrate/calibrate.h"
 #include "silpose/geometry/calibration_file.h"
 #include "silpose/session/board_search.h"
+#include "silpose/session/run_facts.h"
 
 namespace silpose::app {
 namespace {
@@ -23,54 +22,10 @@ struct CalibrateOptions {
   std::optional<double> square_mm, floor_s, fps;
 };
 
-Board parse_board(const CalibrateOptions& options) {
-  Board board;
-  const char* const end = options.board.data() + options.board.size();
-  const auto [cross, bad_columns] = std::from_chars(options.board.data(), end, board.columns);
-  const bool has_cross = bad_columns == std::errc() && cross != end && *cross == 'x';
-  const auto [rest, bad_rows] = has_cross ? std::from_chars(cross + 1, end, board.rows) : std::from_chars_result{end};
-  if (!has_cross || bad_rows != std::errc() || rest != end) {
-    throw UsageError(fmt::format("--board: {} is not COLUMNSxROWS", options.board));
-  }
-  if (std::min(board.columns, board.rows) < 3 || std::max(board.columns, board.rows) > 50) {
-    throw UsageError(fmt::format("--board: {} is outside 3x3 to 50x50 inner corners", options.board));
-  }
-  if (options.videos.size() > 1 && !board.has_one_way_up()) {
-    throw UsageError(
-        fmt::format("--board: {} looks the same upside down, and several cameras would confuse it; one "
-                    "number must be odd and one even",
-                    options.board));
-  }
-  if (!options.square_mm) throw UsageError("--square is missing: the side of a square in mm, measured on the print");
-  board.square_m = *options.square_mm / 1000;
-  return board;
-}
-
-// As --camera-name says, or after the files: "calib/left.mp4" is "left".
-std::vector<std::string> camera_names(const CalibrateOptions& options) {
-  std::vector<std::string> names = options.names;
-  if (!names.empty() && names.size() != options.videos.size()) {
-    throw UsageError(fmt::format("--camera-name: {} names for {} videos", names.size(), options.videos.size()));
-  }
-  for (size_t c = names.size(); c < options.videos.size(); ++c) {
-    const fs::path path = options.videos[c];
-    names.push_back((path.has_filename() ? path : path.parent_path()).stem().string());
-  }
-  for (size_t c = 0; c < names.size(); ++c) {
-    if (names[c].empty() || names[c].find('/') != std::string::npos) {
-      throw UsageError(fmt::format("--camera-name: '{}' is not a valid name", names[c]));
-    }
-    if (std::count(names.begin(), names.end(), names[c]) > 1) {
-      throw UsageError(fmt::format("two cameras would be named {}; give --camera-name once per video", names[c]));
-    }
-  }
-  return names;
-}
-
 Outcome outcome_of(const CalibrateOptions& options, const BoardSearch& search, const CameraCalibration& calibration,
                    const std::vector<std::string>& warnings, const CommonOptions& common) {
   Outcome outcome;
-  outcome.json = run_facts(common);
+  outcome.json = run_facts(common.program);
   outcome.json["frames_searched"] = search.num_searched;
   outcome.json["cameras"] = nlohmann::ordered_json::array();
   for (size_t c = 0; c < calibration.cameras.size(); ++c) {
@@ -98,8 +53,9 @@ Outcome outcome_of(const CalibrateOptions& options, const BoardSearch& search, c
 }
 
 Result<Outcome> run_calibrate(const CalibrateOptions& options, const CommonOptions& common, Console& console) {
-  const Board board = parse_board(options);
-  const std::vector<std::string> names = camera_names(options);
+  const Board board = board_of(options.board, options.square_mm.value_or(0), options.videos.size());
+  if (!options.square_mm) throw_option_error("--square is missing: the side of a square in mm, measured on the print");
+  const std::vector<std::string> names = camera_names_of(options.videos, options.names);
   if (fs::is_directory(options.out)) return error("{}: is a directory", options.out);
   const Result<BoardSearch> search = search_board(board, options.videos, names, options.floor_s, options.fps, console);
   if (!search) return search.failure();
@@ -123,7 +79,7 @@ Command add_calibrate(CLI::App& program, const CommonOptions& common) {
   CLI::App* const app = program.add_subcommand("calibrate", "Cameras from a printed chessboard moved in front of them");
   app->add_option(
          "VIDEO", options->videos,
-         "Videos of the board, tilted in all directions, all over the picture; one per camera, in step, same board")
+         "Videos of the board, tilted in all directions, all over the image; one per camera, in step, same board")
       ->required();
   app->add_option("--out", options->out, "Calibration file (TOML) for --camera of the other commands")->required();
   app->add_option("--board", options->board, "Inner corners, COLUMNSxROWS")->capture_default_str();

@@ -9,26 +9,20 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "apps/silpose/console.h"
 #include "silpose/base/result.h"
+#include "silpose/session/run_context.h"
 
 namespace silpose::app {
 
-// Wrong usage found only when options are put together: exit 2. The message names the option.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 struct CommonOptions {
-  uint64_t seed = 1;
-  int threads = 0;  // 0: all cores
+  ProgramRun program;  // with --seed
+  int threads = 0;     // 0: all cores
   bool quiet = false;
   bool json = false;
-  std::string command_line;  // as typed
 };
 
 struct Outcome {
@@ -45,9 +39,6 @@ struct Command {
   const std::string* option_file = nullptr;  // --config, where the command has it
 };
 
-// --seed, --threads, --quiet, --json and --help.
-void add_common_options(CLI::App& command, CommonOptions& common);
-
 Command add_track(CLI::App& program, const CommonOptions& common);
 Command add_synth(CLI::App& program, const CommonOptions& common);
 Command add_evaluate(CLI::App& program, const CommonOptions& common);
@@ -55,18 +46,19 @@ Command add_segment(CLI::App& program, const CommonOptions& common);
 Command add_render(CLI::App& program, const CommonOptions& common);
 Command add_calibrate(CLI::App& program, const CommonOptions& common);
 Command add_experiment(CLI::App& program, const CommonOptions& common);
-std::vector<Command> add_model(CLI::App& program, CommonOptions& common);
+std::vector<Command> add_model(CLI::App& program, const CommonOptions& common);
+Command add_model_fit(CLI::App& model, const CommonOptions& common);
+
+// What the library is given of the console: progress, messages, and where data lie.
+RunContext context_of(Console& console);
 
 // A check for options: a finite number from `low` to `high`, both included.
 CLI::Validator within(double low, double high);
 
-// "640x480". Errors: not of that form, outside 16 to 8192.
+// "640x480". Errors: throws OptionError for another form, and outside 16 to 8192.
 struct Size {
   int width = 0, height = 0;
 };
-Size parse_size(const std::string& option, const std::string& text);  // throws UsageError
-
-// The numbers of "x,y,w,h". Errors: throws UsageError when there are not `count` of them.
-std::vector<double> parse_numbers(const std::string& option, const std::string& text, size_t count);
+Size parse_size(const std::string& option, const std::string& text);
 
 }  // namespace silpose::app

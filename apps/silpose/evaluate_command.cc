@@ -1,13 +1,13 @@
 // silpose evaluate: errors of a result against a truth.
 #include <fmt/format.h>
 
-#include <fstream>
 #include <memory>
 
-#include "apps/silpose/body_choice.h"
 #include "apps/silpose/command.h"
+#include "apps/silpose/shared_options.h"
+#include "silpose/base/option_error.h"
 #include "silpose/evaluate/evaluation.h"
-#include "silpose/session/result_files.h"
+#include "silpose/session/body_choice.h"
 
 namespace silpose::app {
 namespace {
@@ -17,18 +17,10 @@ struct EvaluateCommandOptions {
   EvaluateOptions evaluation;
 };
 
-// The body that a result was made with: the one fitted to its clip, or the one named in its run.json.
-std::string model_of(const std::filesystem::path& directory) {
-  if (const auto fitted = directory / kFittedBodyFile; std::filesystem::exists(fitted)) return fitted.string();
-  std::ifstream file(directory / "run.json");
-  const nlohmann::json run = nlohmann::json::parse(file, nullptr, false);
-  if (!run.is_object() || !run.contains("model") || !run["model"].is_string()) return "human";
-  return run["model"].get<std::string>();
-}
-
 Result<Outcome> run_evaluate(const EvaluateCommandOptions& options, Console& console) {
-  if (options.evaluation.end_s <= options.evaluation.start_s) throw UsageError("--start is not before --end");
-  const auto body = choose_body(options.model.empty() ? model_of(options.result) : options.model, console);
+  if (options.evaluation.end_s <= options.evaluation.start_s) throw_option_error("--start is not before --end");
+  const std::string model = options.model.empty() ? model_of_result(options.result) : options.model;
+  const auto body = choose_body(model, context_of(console));
   if (!body) return body.failure();
   const Result<Recorded> result = read_recorded(options.result, **body);
   if (!result) return result.failure();

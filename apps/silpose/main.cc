@@ -7,7 +7,9 @@
 #include <exception>
 
 #include "apps/silpose/command.h"
-#include "apps/silpose/option_file.h"
+#include "apps/silpose/config_file.h"
+#include "apps/silpose/shared_options.h"
+#include "silpose/base/option_error.h"
 #include "silpose/base/parallel.h"
 
 namespace silpose::app {
@@ -49,7 +51,7 @@ int run_command(const Command& command, const CommonOptions& common) {
       fmt::print("{}\n", outcome->text);
     }
     return outcome->interrupted ? kInterrupted : outcome->failed ? kFailure : kSuccess;
-  } catch (const UsageError& wrong) {
+  } catch (const OptionError& wrong) {
     return fail(console, common.json, wrong.what(), kWrongUsage);
   } catch (const CLI::ParseError& wrong) {  // from options that a --config file gave
     return fail(console, common.json, wrong.what(), kWrongUsage);
@@ -60,7 +62,8 @@ int run_command(const Command& command, const CommonOptions& common) {
 
 int run_program(int argc, char** argv) {
   CommonOptions common;
-  for (int i = 0; i < argc; ++i) common.command_line += (i == 0 ? "silpose" : " " + std::string(argv[i]));
+  common.program.version = SILPOSE_VERSION;
+  for (int i = 0; i < argc; ++i) common.program.command_line += (i == 0 ? "silpose" : " " + std::string(argv[i]));
   const bool json = std::any_of(argv + 1, argv + argc, [](const char* word) { return std::string(word) == "--json"; });
 
   CLI::App program{"Tracks the 3D pose of one person in a clip, from silhouettes.", "silpose"};

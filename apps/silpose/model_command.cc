@@ -4,13 +4,13 @@
 #include <memory>
 #include <optional>
 
-#include "apps/silpose/body_choice.h"
 #include "apps/silpose/body_facts.h"
 #include "apps/silpose/command.h"
-#include "apps/silpose/data_folder.h"
-#include "apps/silpose/model_fit.h"
+#include "apps/silpose/shared_options.h"
+#include "silpose/base/data_folder.h"
 #include "silpose/geometry/rigid3.h"
 #include "silpose/render/body_levels.h"
+#include "silpose/session/body_choice.h"
 
 namespace silpose::app {
 namespace {
@@ -36,7 +36,7 @@ Result<Outcome> list_models() {
 }
 
 Result<Outcome> inspect_model(const std::string& model, Console& console) {
-  const auto body = choose_body(model, console);
+  const auto body = choose_body(model, context_of(console));
   if (!body) return body.failure();
   Outcome outcome;
   outcome.is_answer = true;
@@ -72,16 +72,16 @@ struct ModelOptions {
 
 Result<Outcome> build_model(const ModelOptions& options, Console& console) {
   if (options.if_older) {
-    const std::optional<BodyModel> kept = kept_human(options.out);
+    const std::optional<BodyModel> kept = kept_human(options.out, data_directory());
     if (kept) return Outcome{.json = facts_of(*kept), .text = summary_of(*kept)};
   }
-  const Result<BodyModel> body = build_body(options.model, console);
+  const Result<BodyModel> body = build_body(options.model, context_of(console));
   if (!body) return body.failure();
   return write_model(*body, options.out);
 }
 
 Result<Outcome> model_with_levels(const ModelOptions& options, Console& console) {
-  const auto body = choose_body(options.model, console);
+  const auto body = choose_body(options.model, context_of(console));
   if (!body) return body.failure();
   if (options.vertices) return write_model(level_of_detail(**body, *options.vertices), options.out);
   BodyModel with_levels = **body;
@@ -97,7 +97,7 @@ Result<Outcome> model_with_levels(const ModelOptions& options, Console& console)
 
 }  // namespace
 
-std::vector<Command> add_model(CLI::App& program, CommonOptions& common) {
+std::vector<Command> add_model(CLI::App& program, const CommonOptions& common) {
   const auto options = std::make_shared<ModelOptions>();
   CLI::App* const model = program.add_subcommand("model", "Body models");
   model->require_subcommand(1);

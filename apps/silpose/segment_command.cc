@@ -3,11 +3,12 @@
 
 #include <memory>
 
-#include "apps/silpose/command.h"
-#include "apps/silpose/input_options.h"
-#include "apps/silpose/run_facts.h"
+#include "apps/silpose/config_file.h"
+#include "apps/silpose/shared_options.h"
+#include "silpose/base/option_error.h"
 #include "silpose/image/image_file.h"
 #include "silpose/session/result_directory.h"
+#include "silpose/session/run_facts.h"
 
 namespace silpose::app {
 namespace {
@@ -19,13 +20,13 @@ struct SegmentOptions {
 
 Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, const CommonOptions& common,
                             Console& console) {
-  if (options.out.empty()) throw UsageError("--out is missing");
-  if (options.input.videos.size() > 1) throw UsageError("VIDEO: only one is allowed");
+  if (options.out.empty()) throw_option_error("--out is missing");
+  if (options.input.videos.size() > 1) throw_option_error("VIDEO: only one is allowed");
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
   if (!directory) return directory.failure();
   Result<Video> video = open_input(options.input);
   if (!video) return video.failure();
-  const auto opened = observations_of(std::move(*video), options.input, console);
+  const auto opened = observations_of(std::move(*video), options.input, context_of(console));
   if (!opened) return opened.failure();
   ObservationSource* const source = opened->get();
   std::error_code failed;  // the first mask would report it
@@ -56,7 +57,7 @@ Result<Outcome> run_segment(const CLI::App& app, const SegmentOptions& options, 
   for (const std::string& warning : warnings) console.warning(warning);
 
   Outcome outcome;
-  outcome.json = run_facts(common);
+  outcome.json = run_facts(common.program);
   outcome.json["frames"] = frames;
   outcome.json["frames_empty"] = empty;
   outcome.json["mean_area_px"] = area / static_cast<double>(std::max<int64_t>(1, frames));
@@ -77,7 +78,7 @@ Command add_segment(CLI::App& program, const CommonOptions& common) {
   CLI::App* const app = program.add_subcommand("segment", "Cut the person out of a clip: masks only");
   add_input_options(*app, options->input);
   app->add_option("--out", options->out, "Directory for masks/ and run.json");
-  app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
+  add_config_option(*app, options->config);
   return {app, [app, options, &common](Console& console) { return run_segment(*app, *options, common, console); },
           &options->config};
 }

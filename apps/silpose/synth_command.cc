@@ -3,12 +3,14 @@
 
 #include <memory>
 
-#include "apps/silpose/body_choice.h"
-#include "apps/silpose/camera_choice.h"
-#include "apps/silpose/command.h"
-#include "apps/silpose/run_facts.h"
+#include "apps/silpose/config_file.h"
+#include "apps/silpose/shared_options.h"
+#include "silpose/base/option_error.h"
 #include "silpose/exchange/clip_file.h"
+#include "silpose/session/body_choice.h"
+#include "silpose/session/camera_choice.h"
 #include "silpose/session/result_directory.h"
+#include "silpose/session/run_facts.h"
 #include "silpose/synth/sequence_files.h"
 
 namespace silpose::app {
@@ -44,21 +46,21 @@ Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions&
   if (!options.views.empty()) scene.views.clear();
   for (const std::string& text : options.views) {
     const Result<View> view = parse_view(text);
-    if (!view) throw UsageError(fmt::format("--view: {}", view.error().message));
+    if (!view) throw_option_error("--view: {}", view.error().message);
     for (const View& other : scene.views) {
-      if (other.name == view->name) throw UsageError(fmt::format("--view: {} is given twice", text));
+      if (other.name == view->name) throw_option_error("--view: {} is given twice", text);
     }
     scene.views.push_back(*view);
   }
-  const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, console);
+  const Result<std::shared_ptr<const BodyModel>> body = choose_body(options.model, context_of(console));
   if (!body) return body.failure();
   const Result<SyntheticMotion> motion = make_motion(options.motion, **body,
                                                      {.num_frames = options.frames,
                                                       .fps = options.fps,
                                                       .amplitude_deg = options.amplitude_deg,
                                                       .period_s = options.period_s,
-                                                      .seed = common.seed});
-  if (!motion && !is_clip_file(options.motion)) throw UsageError(fmt::format("--motion: {}", motion.error().message));
+                                                      .seed = common.program.seed});
+  if (!motion && !is_clip_file(options.motion)) throw_option_error("--motion: {}", motion.error().message);
   if (!motion) return motion.failure();
   if (motion->mean_residual_deg) {
     outcome.json["retargeting_deg"] = {{"mean", *motion->mean_residual_deg},
@@ -75,10 +77,11 @@ Result<SyntheticSequence> make(const SynthOptions& options, const CommonOptions&
 Result<std::vector<DegradedMasks>> degrade(const SyntheticSequence& sequence, const SynthOptions& options,
                                            const CommonOptions& common, Outcome& outcome) {
   const Result<MaskFault> fault = parse_mask_fault(options.noise);
-  if (!fault) throw UsageError(fmt::format("--noise: {}", fault.error().message));
+  if (!fault) throw_option_error("--noise: {}", fault.error().message);
   std::vector<DegradedMasks> masks;
   if (*fault == MaskFault::kNone) return masks;
-  const MaskNoise noise{.fault = *fault, .iou = options.noise_iou.value_or(0.9), .outline = {}, .seed = common.seed};
+  const MaskNoise noise{
+      .fault = *fault, .iou = options.noise_iou.value_or(0.9), .outline = {}, .seed = common.program.seed};
   nlohmann::ordered_json iou = nlohmann::ordered_json::array();
   for (size_t c = 0; c < sequence.cameras.size(); ++c) {
     Result<DegradedMasks> of_camera = DegradedMasks::create(sequence, static_cast<int>(c), noise);
@@ -92,22 +95,22 @@ Result<std::vector<DegradedMasks>> degrade(const SyntheticSequence& sequence, co
 
 Result<Outcome> run_synth(const CLI::App& app, const SynthOptions& options, const CommonOptions& common,
                           Console& console) {
-  if (options.out.empty()) throw UsageError("--out is missing");
-  if (!options.camera.file.empty() && !options.views.empty()) throw UsageError("--view: not together with --camera");
-  if (options.lead_in > 0 && !options.colour) throw UsageError("--lead-in: needs --colour");
-  if (options.noise_iou && options.noise != "edge") throw UsageError("--noise-iou: needs --noise edge");
+  if (options.out.empty()) throw_option_error("--out is missing");
+  if (!options.camera.file.empty() && !options.views.empty()) throw_option_error("--view: not together with --camera");
+  if (options.lead_in > 0 && !options.colour) throw_option_error("--lead-in: needs --colour");
+  if (options.noise_iou && options.noise != "edge") throw_option_error("--noise-iou: needs --noise edge");
   Result<ResultDirectory> directory = ResultDirectory::create(options.out);
   if (!directory) return directory.failure();
   Outcome outcome;
-  outcome.json = run_facts(common);
+  outcome.json = run_facts(common.program);
   const Result<SyntheticSequence> sequence = make(options, common, console, outcome);
   if (!sequence) return sequence.failure();
 
   std::optional<ColourOptions> colour;
   if (options.colour) {
     const Result<Backdrop> backdrop = parse_backdrop(options.backdrop);
-    if (!backdrop) throw UsageError(fmt::format("--backdrop: {}", backdrop.error().message));
-    colour = ColourOptions{.backdrop = *backdrop, .seed = common.seed};
+    if (!backdrop) throw_option_error("--backdrop: {}", backdrop.error().message);
+    colour = ColourOptions{.backdrop = *backdrop, .seed = common.program.seed};
   }
   const Result<std::vector<DegradedMasks>> masks = degrade(*sequence, options, common, outcome);
   if (!masks) return masks.failure();
@@ -161,7 +164,7 @@ Command add_synth(CLI::App& program, const CommonOptions& common) {
   app->add_option("--noise-iou", options->noise_iou,
                   "With --noise edge: mean intersection over union with the true masks; default 0.9")
       ->check(within(0.6, 0.99));
-  app->add_option("--config", options->config, "Options from a TOML file; the command line wins");
+  add_config_option(*app, options->config);
   return {app, [app, options, &common](Console& console) { return run_synth(*app, *options, common, console); },
           &options->config};
 }

@@ -23,20 +23,20 @@ const char* type_name(OptionKind kind) {
 
 std::string values_in_help(const OptionInfo& info) {
   if (info.kind == OptionKind::kWord) return fmt::format("{{{}}}", fmt::join(info.words, ","));
+  if (info.kind == OptionKind::kText) return "";
   return values_text(info);
 }
 
 }  // namespace
 
-void add_table_option(CLI::App& app, const OptionInfo& info, const std::string& group, const std::string& defaults,
-                      GivenOptions& given) {
-  const std::string help = defaults.empty() ? info.help : fmt::format("{} ({})", info.help, defaults);
+CLI::Option* add_table_option(CLI::App& app, const OptionInfo& info, const std::string& help,
+                              const std::function<void(const OptionValue&)>& take) {
   if (info.kind == OptionKind::kFlag) {
-    app.add_flag_function(
-           fmt::format("--{0},!--no-{0}", info.name),
-           [&given, name = info.name](int64_t count) { given.insert_or_assign(name, count > 0); }, help)
-        ->group(group);
-    return;
+    return app.add_flag_function(
+        fmt::format("--{0},!--no-{0}", info.name), [take](int64_t count) { take(count > 0); }, help);
+  }
+  if (info.kind == OptionKind::kTexts) {  // one per use of the option: texts may have commas in them
+    return app.add_option_function<std::vector<std::string>>("--" + info.name, take, help)->allow_extra_args(false);
   }
   const CLI::Validator valid(
       [info](const std::string& text) -> std::string {
@@ -44,17 +44,11 @@ void add_table_option(CLI::App& app, const OptionInfo& info, const std::string& 
         return value ? "" : value.error().message;
       },
       values_in_help(info));
-  CLI::Option* const option = app.add_option_function<std::string>(
-                                     "--" + info.name,
-                                     [&given, info](const std::string& text) {
-                                       given.insert_or_assign(info.name, parse_option(info, text).value());
-                                     },
-                                     help)
-                                  ->type_name(type_name(info.kind))
-                                  ->check(valid)
-                                  ->group(group);
-  // Every tracker takes this value: it is written with a result even where nothing has the option.
-  if (info.off) option->default_str(text_of(*info.off));
+  return app
+      .add_option_function<std::string>(
+          "--" + info.name, [take, info](const std::string& text) { take(parse_option(info, text).value()); }, help)
+      ->type_name(type_name(info.kind))
+      ->check(valid);
 }
 
 }  // namespace silpose::app

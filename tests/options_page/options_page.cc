@@ -8,6 +8,9 @@
 #include "silpose/base/option_table.h"
 #include "silpose/base/text_file.h"
 #include "silpose/experiment/run_settings.h"
+#include "silpose/segment/segmentation_options.h"
+#include "silpose/session/camera_choice.h"
+#include "silpose/session/input_options.h"
 #include "silpose/track/tracker_presets.h"
 
 namespace silpose {
@@ -31,6 +34,24 @@ std::string values_shown(const OptionInfo& info) {
   return info.kind == OptionKind::kFlag ? "on, off" : values_text(info);
 }
 
+std::string option_shown(const OptionInfo& info) {
+  if (info.kind == OptionKind::kFlag) return fmt::format("`--{0}`, `--no-{0}`", info.name);
+  return fmt::format("`--{}`", info.name);
+}
+
+// The options of one struct, with the values that it has by itself.
+template <class S>
+std::string plain_section(const OptionTable<S>& table) {
+  std::string text = fmt::format("### {}\n\n{}{}", table.group, row({"option", "values", "not given", "what it does"}),
+                                 row({"---", "---", "---", "---"}));
+  for (const Option<S>& option : table.options) {
+    const std::string values =
+        option.info.kind == OptionKind::kTexts ? "a text; may be repeated" : values_shown(option.info);
+    text += row({option_shown(option.info), values, shown(option.get(S{})), option.info.help});
+  }
+  return text + "\n";
+}
+
 // The options of one struct, with their values in the presets that have it.
 template <class S>
 std::string tracker_section(const OptionTable<S>& table) {
@@ -48,9 +69,7 @@ std::string tracker_section(const OptionTable<S>& table) {
   std::string text = fmt::format("### {}\n\n{}{}", table.group, row(head), row(line));
   for (const Option<S>& option : table.options) {
     const OptionInfo& info = option.info;
-    const bool is_flag = info.kind == OptionKind::kFlag;
-    std::vector<std::string> cells = {
-        is_flag ? fmt::format("`--{0}`, `--no-{0}`", info.name) : fmt::format("`--{}`", info.name), values_shown(info)};
+    std::vector<std::string> cells = {option_shown(info), values_shown(info)};
     for (const GivenOptions& named : values) cells.push_back(shown(named.at(info.name)));
     cells.push_back(info.help);
     text += row(cells);
@@ -77,6 +96,12 @@ std::string page() {
          "holds, else \"with particles\".\n\n" +
          tracker_section(tracker_option_table()) + tracker_section(fitted_option_table()) +
          tracker_section(sampling_option_table()) +
+         "## The input\n\n"
+         "Of commands that read videos: `track`, `segment` and `model fit`. Those of a calibration file also of "
+         "`synth` "
+         "and\n`render`, those of the focal length of `track` only. In a file lists are TOML lists.\n\n" +
+         plain_section(segmentation_option_table()) + plain_section(input_option_table()) +
+         plain_section(camera_option_table()) + plain_section(focal_option_table()) +
          "## Experiments\n\n"
          "Settings of a run in `experiments/NAME.toml` (docs/formats.md). Every option of the tracker is one, too, "
          "with\n"

@@ -3,8 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <filesystem>
 #include <utility>
 
+#include "silpose/base/option_error.h"
 #include "silpose/base/parallel.h"
 #include "silpose/video/video.h"
 
@@ -37,6 +40,49 @@ void search_batch(const Board& board, const std::vector<Frame>& batch, std::opti
 }
 
 }  // namespace
+
+Board board_of(const std::string& corners, double square_mm, size_t num_cameras) {
+  Board board;
+  board.square_m = square_mm / 1000;
+  const char* const end = corners.data() + corners.size();
+  const auto [cross, bad_columns] = std::from_chars(corners.data(), end, board.columns);
+  const bool has_cross = bad_columns == std::errc() && cross != end && *cross == 'x';
+  const auto [rest, bad_rows] = has_cross ? std::from_chars(cross + 1, end, board.rows) : std::from_chars_result{end};
+  if (!has_cross || bad_rows != std::errc() || rest != end) {
+    throw_option_error("--board: {} is not COLUMNSxROWS", corners);
+  }
+  if (std::min(board.columns, board.rows) < 3 || std::max(board.columns, board.rows) > 50) {
+    throw_option_error("--board: {} is outside 3x3 to 50x50 inner corners", corners);
+  }
+  if (num_cameras > 1 && !board.has_one_way_up()) {
+    throw_option_error(
+        "--board: {} looks the same upside down, and several cameras would confuse it; one number must be odd and one "
+        "even",
+        corners);
+  }
+  return board;
+}
+
+std::vector<std::string> camera_names_of(const std::vector<std::string>& videos,
+                                         const std::vector<std::string>& given) {
+  std::vector<std::string> names = given;
+  if (!names.empty() && names.size() != videos.size()) {
+    throw_option_error("--camera-name: {} names for {} videos", names.size(), videos.size());
+  }
+  for (size_t c = names.size(); c < videos.size(); ++c) {
+    const std::filesystem::path path = videos[c];
+    names.push_back((path.has_filename() ? path : path.parent_path()).stem().string());
+  }
+  for (const std::string& name : names) {
+    if (name.empty() || name.find('/') != std::string::npos) {
+      throw_option_error("--camera-name: '{}' is not a valid name", name);
+    }
+    if (std::ranges::count(names, name) > 1) {
+      throw_option_error("two cameras would be named {}; give --camera-name once per video", name);
+    }
+  }
+  return names;
+}
 
 Result<BoardSearch> search_board(const Board& board, const std::vector<std::string>& videos,
                                  const std::vector<std::string>& names, std::optional<double> floor_s,

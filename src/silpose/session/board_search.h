@@ -21,6 +21,14 @@ struct BoardSearch {
   std::vector<std::string> warnings;
 };
 
+// "9x6" inner corners, and the side of a square. Errors: throws OptionError for another form, a size outside 3x3 to
+// 50x50, and a board that looks the same upside down where several cameras see it.
+Board board_of(const std::string& corners, double square_mm, size_t num_cameras);
+
+// Names of the cameras of these videos: as given, or after the files: "calib/left.mp4" is "left". [C]
+// Errors: throws OptionError for another number of names, two of one name, and a name that is none.
+std::vector<std::string> camera_names_of(const std::vector<std::string>& videos, const std::vector<std::string>& given);
+
 // Searches about 200 frames spread over the videos, which are in step, and the one at `floor_s` (seconds; of input that
 // carries no rate, at `fps`, or 30 with a warning). Names [C].
 // Errors: those of open_video(); a live camera; no board anywhere in a video, or in any at `floor_s`; interrupted.
